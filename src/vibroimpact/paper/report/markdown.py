@@ -40,7 +40,8 @@ def rows_table(rows: Sequence[ComparedValue]) -> str:
     """Return the table of printed and computed values; consecutive rows of one printed
     value show it once.
     """
-    cells, before = [], None
+    cells = []
+    before = None
     for row in rows:
         again = row.printed is before
         before = row.printed

@@ -188,7 +188,8 @@ VALUE_COLUMNS = (
 
 def _values_row(part: str, row: ComparedValue) -> dict[str, Any]:
     """Return a compared value as a row of `values.csv`, in full precision."""
-    value, explanation = row.printed, row.explanation if row.verdict is Verdict.EXPLAINED else None
+    value = row.printed
+    explanation = row.explanation if row.verdict is Verdict.EXPLAINED else None
     return {
         "part": part,
         "name": value.name,

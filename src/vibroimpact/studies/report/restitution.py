@@ -68,7 +68,8 @@ def summarize_restitution(study: Study) -> RestitutionSummary:
 
 def _extremes(values: Floats) -> tuple[float, float] | None:
     """Return minimum and maximum of the finite values."""
-    low, high = float(np.fmin.reduce(values)), float(np.fmax.reduce(values))
+    low = float(np.fmin.reduce(values))
+    high = float(np.fmax.reduce(values))
     return (low, high) if math.isfinite(low) else None
 
 
@@ -209,5 +210,6 @@ def _impacts(study: Study) -> _Impacts:
 
 
 def _ends(ends: tuple[float, float]) -> str:
-    low, high = fixed(ends[0], 4), fixed(ends[1], 4)
+    low = fixed(ends[0], 4)
+    high = fixed(ends[1], 4)
     return low if low == high else f"{low} to {high}"

@@ -77,7 +77,8 @@ def _bars(
 ) -> tuple[Mark, ...]:
     """Return the bars of one result, one for each of the named keys."""
     lying = partial(Bars, lying=True, texts=names)
-    row, places = found.rows[output.name], np.arange(float(len(order)))
+    row = found.rows[output.name]
+    places = np.arange(float(len(order)))
     if found.way == SOBOL:
         sides = (
             (0.18, "first_order", "alone (first order)", "detail"),
