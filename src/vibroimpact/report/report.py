@@ -289,9 +289,9 @@ class Section:
     medium: Literal["page", "terminal", "both"] = "both"
 
     @property
-    def charts(self) -> list[Chart]:
+    def charts(self) -> tuple[Chart, ...]:
         """The charts within it."""
-        return [block.chart for block in self.blocks if isinstance(block, Figure)]
+        return tuple(block.chart for block in self.blocks if isinstance(block, Figure))
 
 
 @dataclass(frozen=True)
