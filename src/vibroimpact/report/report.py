@@ -181,9 +181,9 @@ class Section:
     medium: Literal["page", "terminal", "both"] = "both"
 
     @property
-    def charts(self) -> list[Chart]:
+    def charts(self) -> tuple[Chart, ...]:
         """The charts within it."""
-        return [block.chart for block in self.blocks if isinstance(block, Figure)]
+        return tuple(block.chart for block in self.blocks if isinstance(block, Figure))
 
 
 @dataclass(frozen=True)
@@ -250,9 +250,9 @@ class Report:
         return dict(self.summary if self.data is None else self.data)
 
     @property
-    def all_charts(self) -> list[Chart]:
+    def all_charts(self) -> tuple[Chart, ...]:
         """The charts within the sections, and those that follow them."""
-        return [*(chart for section in self.sections for chart in section.charts), *self.charts]
+        return (*(chart for section in self.sections for chart in section.charts), *self.charts)
 
 
 _MOST_ROWS = 50
