@@ -57,6 +57,6 @@ def _markdown_block(block: Block) -> str:
         case Facts(rows):
             return "\n".join(f"- {name}: {meaning}" for name, meaning in rows) + "\n"
         case Table(columns):
-            rows = zip(*(column.cells for column in columns), strict=True)
-            return table([column.heading for column in columns], rows) + "\n"
+            cells = zip(*(column.cells for column in columns), strict=True)
+            return table([column.heading for column in columns], cells) + "\n"
     raise TypeError(block)

@@ -19,7 +19,7 @@ from vibroimpact.paper.report.outline import (
 )
 from vibroimpact.paper.report.reproduction import Reproduction
 from vibroimpact.paper.report_section import Verdict
-from vibroimpact.report.report import Column, Note, Paragraph, Report, Section, Table
+from vibroimpact.report.report import Block, Column, Note, Paragraph, Report, Section, Table
 from vibroimpact.results.csv_files import write_csv
 
 
@@ -77,7 +77,7 @@ def _counts_sections(parts: Mapping[str, RenderedPart]) -> list[Section]:
         "the printed values they were inferred from. Fitted model: fitted to printed results of "
         "Type 2. Arithmetic: from other printed results. Input: what the paper assumes."
     )
-    blocks = {
+    blocks: dict[str, Block] = {
         "parts": _counts_table("part", by_part, bold=[len(by_part) - 1]),
         "kinds": _counts_table("kind", by_kind),
         "meaning": kinds,

@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 
 from vibroimpact.report.report import (
+    Block,
     Code,
     Facts,
     Note,
@@ -132,8 +133,8 @@ def _failures_section(study: Study) -> Section:
     failed = len(study.failures)
     which = f"The first {shown} of {failed}; drops" if shown < failed else "Drops"
     numbering = f"{which} are numbered from 0, as in drops.csv. All reasons are in study.nc."
-    reasons = map(Paragraph, reason_sentences(study))
-    blocks = (*reasons, table, Note(numbering))
+    blocks: list[Block] = [Paragraph(reason) for reason in reason_sentences(study)]
+    blocks += [table, Note(numbering)]
     return Section("failures", "Drops that failed", blocks, medium="page")
 
 
