@@ -16,6 +16,7 @@ def html_report(report: Report) -> str:
 
     Examples
     --------
+    >>> from vibroimpact.report.report import Section
     >>> section = Section("balls", "Balls", (Facts([("radius", "10 mm")]),))
     >>> print(html_report(Report("Two balls", (section,), {}, answer="They collide.")))
     <p><strong>Two balls</strong><br>They collide.</p>
