@@ -800,3 +800,25 @@ def test_several_files_of_different_kinds(tmp_path: Path) -> None:
     ):
         with pytest.raises(vi.InputError, match=message):
             compared_kind(files, asked, None, windowed=False)
+
+
+def test_the_noise_of_one_channel_is_no_mode() -> None:
+    """One of six channels has thirty times the noise of the others: each channel counts once."""
+    random = np.random.default_rng(3)
+    frequency = np.arange(20.0, 1000.0, 0.5)
+    natural = np.sort(random.uniform(100.0, 900.0, 5))
+    ratios = random.uniform(0.003, 0.02, 5)
+    squares = natural[:, None] ** 2
+    tones = squares / (squares - frequency**2 + 2j * ratios[:, None] * natural[:, None] * frequency)
+    hammer = vi.signals.DegreeOfFreedom(("hammer",))
+    responses = []
+    for channel in range(6):
+        value = 1e-3 * random.normal(size=5) @ tones
+        level = (0.06 if channel == 1 else 0.002) * np.abs(value).mean()
+        noise = random.normal(size=len(frequency)) + 1j * random.normal(size=len(frequency))
+        sensor = vi.signals.DegreeOfFreedom((f"a{channel}",))
+        responses.append(
+            vi.signals.FrequencyResponse(sensor, hammer, frequency, value + level * noise, "m/N")
+        )
+    modes = vi.signals.modes_in_responses(responses)
+    assert [mode.frequency.value for mode in modes] == pytest.approx(natural, rel=1e-3)

@@ -115,7 +115,10 @@ class Lines(Spectra):
         for number in range(len(self.value)):
             channel = [number]
             spread = _spread(noise[:, channel], response[:, channel], self.floor[channel])
-            channels.append(replace(self, value=self.value[channel], spread=spread))
+            one_channel = replace(
+                self, value=self.value[channel], floor=self.floor[channel], spread=spread
+            )
+            channels.append(one_channel)
 
         def misfit(tones: Floats) -> float:
             return sum(channel.misfit(tones) for channel in channels)
