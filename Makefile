@@ -8,7 +8,7 @@
 # make package  build the sdist and from it the wheel, and test the wheel in an empty environment without extras
 # make check     lint, formatting and types, as in CI
 # make bench     run the benchmarks
-# make docs      generate the pages of the contact laws, the table of features, and the names for shell completion
+# make docs      generate the pages of the contact laws, the table of features, the names for shell completion, and the types of the resolved case
 # make docs-site build the documentation site into site/, which can be read offline: open site/index.html; its gallery tests the examples
 # make ci        what continuous integration runs
 # make validation run all comparisons except those with other programs, and generate the validation page
@@ -81,6 +81,7 @@ bench: $(VENV)/installed
 	for script in benchmarks/bench_*.py; do $(BIN)/python $$script || exit 1; done
 
 docs: $(VENV)/installed
+	$(BIN)/python -m vibroimpact.cases.resolved_types
 	$(BIN)/python -m vibroimpact.law_sheets.pages docs
 	$(BIN)/python -m vibroimpact.cli.completion_words
 	$(BIN)/python -m vibroimpact.cli.feature_page docs

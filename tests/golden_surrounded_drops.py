@@ -14,6 +14,7 @@ import vibroimpact as vi
 from support import plain_case
 from vibrating import STIFFNESS, drop_on, random_modes
 from vibroimpact.contact.friction.law import CompliantFriction
+from vibroimpact.contact.friction.registry import friction_laws
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
@@ -21,7 +22,7 @@ from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.contact.registry import contact_laws, friction_laws
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.dynamics.air import Air
 from vibroimpact.dynamics.liquid import Liquid
 from vibroimpact.structures.modal_model import ModalBasis

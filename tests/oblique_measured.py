@@ -12,8 +12,8 @@ import numpy as np
 import vibroimpact as vi
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.observations import from_table
+from vibroimpact.contact.friction.registry import find_friction_law
 from vibroimpact.contact.pair import ContactPair, effective_modulus, effective_shear_modulus
-from vibroimpact.contact.registry import find_friction_law
 
 ALUMINA = vi.Material(density=4000, youngs_modulus=380e9, poissons_ratio=0.23)
 GLASS = vi.Material(density=2500, youngs_modulus=70e9, poissons_ratio=0.25)

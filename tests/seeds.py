@@ -14,7 +14,7 @@ from typing import Any
 
 from studies import RANDOM, study_table
 from support import plain_case
-from vibroimpact.contact.registry import friction_laws
+from vibroimpact.contact.friction.registry import friction_laws
 
 Table = dict[str, Any]
 

@@ -8,7 +8,7 @@
 from __future__ import annotations
 
 from vibroimpact.contact.friction.law import FrictionLaw
-from vibroimpact.contact.registry import find_friction_law, friction_laws
+from vibroimpact.contact.friction.registry import find_friction_law, friction_laws
 from vibroimpact.registry import class_named
 
 __all__ = ["FrictionLaw", "find_friction_law", "friction_laws"]

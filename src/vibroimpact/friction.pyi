@@ -7,5 +7,5 @@ from vibroimpact.contact.friction.laws.mindlin import Mindlin as Mindlin
 from vibroimpact.contact.friction.laws.mindlin import MindlinForce as MindlinForce
 from vibroimpact.contact.friction.laws.mindlin import MindlinRescale as MindlinRescale
 from vibroimpact.contact.friction.laws.rigid import Rigid as Rigid
-from vibroimpact.contact.registry import find_friction_law as find_friction_law
-from vibroimpact.contact.registry import friction_laws as friction_laws
+from vibroimpact.contact.friction.registry import find_friction_law as find_friction_law
+from vibroimpact.contact.friction.registry import friction_laws as friction_laws

@@ -1,8 +1,10 @@
-"""Types of the resolved case: the tables of `case.toml`, in SI, with all defaults resolved.
+"""Types of the resolved case: the tables of `case.toml`, in SI, with all defaults.
 
 A problem carries the resolved case that it was made from, and a result the one that its folder
 holds. Numbers may be arrays, with one value per drop of a batch. Keys that do not apply to a case
 are absent.
+
+`vibroimpact.cases.resolved_types` writes this file from the schema.
 """
 
 from __future__ import annotations
@@ -13,43 +15,43 @@ from typing import Any, TypedDict
 from vibroimpact.arrays import Array
 
 
-class ResolvedBody(TypedDict, total=False):
-    """The keys that sphere and plate share: material, and mesh, reduction and damping of
-    an elastic body.
-    """
+class ResolvedSphere(TypedDict, total=False):
+    """The body that falls."""
 
-    material: Any  # a table of numbers, or "rigid"
-    model: str
     radius: Array
+    material: Any
+    mass: Array
+    inertia: Array
+    model: str
     modes: int
-    max_frequency: float
+    max_frequency: Array
     damping: Any
-    mesh: Mapping[str, Any]
+    mesh: Any
     reduction: str
     attachment_mode: bool
 
 
-class ResolvedSphere(ResolvedBody, total=False):
-    """The sphere."""
+class ResolvedPlate(TypedDict, total=False):
+    """What the sphere falls on: a plate, or another sphere; held fixed, or free."""
 
-    mass: Array
-    inertia: Array | str
-
-
-class ResolvedPlate(ResolvedBody, total=False):
-    """The plate, or the sphere that takes its place."""
-
+    material: Any
+    radius: Array
     size: Sequence[Array]
+    model: str
     element: str
+    modes: int
+    max_frequency: Array
+    damping: Any
     supports: Any
     inclination: Array
     motion: Mapping[str, Any]
+    mesh: Any
+    reduction: str
+    attachment_mode: bool
 
 
 class ResolvedDrop(TypedDict, total=False):
-    """The drop: height or speed [m], [m/s], its angle [rad] or a velocity, spin [rad/s],
-    position [m], gravity [m/s^2], air.
-    """
+    """How the sphere comes down: from a height, or with a speed or velocity at first touch."""
 
     height: Array
     speed: Array
@@ -58,31 +60,31 @@ class ResolvedDrop(TypedDict, total=False):
     spin: Sequence[Array]
     position: Sequence[Array]
     gravity: Array
-    air: Mapping[str, Array]
+    air: Mapping[str, Any]
     same_spot: bool
 
 
 class ResolvedRun(TypedDict, total=False):
-    """The stop rules and the tolerance."""
+    """When to stop, and how exact to be."""
 
     impacts: int | str
-    duration: float
+    duration: Array
     rest_speed: Array
-    tolerance: float
+    tolerance: Array
 
 
 class ResolvedSensor(TypedDict, total=False):
-    """A sensor."""
+    """A sensor at a point of the plate, or a microphone in the air."""
 
     name: str
-    position: Sequence[float] | str
+    position: Sequence[Array] | str
     face: str
-    quantity: str
-    direction: Any
-    rate: float
-    filter: str
-    corner: float
     instrument: str
+    quantity: str
+    direction: str | Sequence[Array]
+    rate: Array
+    filter: str
+    corner: Array
     accelerometer: Mapping[str, Any]
     geophone: Mapping[str, Any]
     strain_gauge: Mapping[str, Any]
@@ -93,11 +95,7 @@ class ResolvedSensor(TypedDict, total=False):
 
 
 class ResolvedCase(TypedDict, total=False):
-    """A resolved case; empty for a problem that was made in Python.
-
-    `contact`: the name of the law, its parameters, the treatment of local compliance, and
-    `friction`: its law and parameters.
-    """
+    """A case as a file has it: its sections, validated, in SI."""
 
     schema_version: int
     name: str

@@ -15,10 +15,11 @@ import vibroimpact as vi
 from exported_drops import MASS, RADIUS, STIFFNESS, told
 from support import one_in
 from vibroimpact.compiled import scalar
+from vibroimpact.contact.friction.registry import friction_laws
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.contact.registry import contact_laws, friction_laws
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, export_formats, find_export_format
 from vibroimpact.exporting.load_drop import drop_of_result

@@ -50,6 +50,9 @@ LAYERS = [
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 
 
+# rooms whose folders import each other; in all others they do not
+ENTWINED = {"calibration", "cases", "dynamics", "structures", "studies"}
+
 # a room that people work in may have a section of the case, which is part of the case file and lies
 # beside the work that it asks for
 SECTIONS = {"vibroimpact.calibration.section", "vibroimpact.studies.section"}
@@ -119,6 +122,39 @@ def test_modules_do_not_import_in_circles() -> None:
     while leaves := {name for name, needs in below.items() if not needs & below.keys()}:
         below = {name: needs for name, needs in below.items() if name not in leaves}
     assert not below, sorted(below)
+
+
+def test_folders_do_not_import_in_circles() -> None:
+    """Of one room neither, but for those in `ENTWINED`, of which each is still one."""
+    folders = {path.parent for path in PACKAGE.rglob("*.py")} - {PACKAGE}
+    below: dict[Path, set[Path]] = {folder: set() for folder in folders}
+    for path in PACKAGE.rglob("*.py"):
+        if path.parent == PACKAGE:
+            continue
+        for name in imports_of(path) - SECTIONS:
+            parts = name.split(".")[1:]
+            imported = PACKAGE.joinpath(*parts)
+            imported = imported if imported.is_dir() else imported.parent
+            below[path.parent] |= {imported} & folders - {path.parent}
+    reached = {folder: reachable(folder, below) for folder in folders}
+    circles = {
+        (folder.relative_to(PACKAGE).parts[0], lower.relative_to(PACKAGE).parts[0])
+        for folder in folders
+        for lower in reached[folder]
+        if folder in reached[lower]
+    }
+    assert circles == {(name, name) for name in ENTWINED}
+
+
+def reachable(start: Path, below: dict[Path, set[Path]]) -> set[Path]:
+    """Return the folders that a folder imports, itself or by others."""
+    reached: set[Path] = set()
+    following = set(below[start])
+    while following:
+        folder = following.pop()
+        reached.add(folder)
+        following |= below[folder] - reached
+    return reached
 
 
 def modules_of(path: Path) -> set[str]:

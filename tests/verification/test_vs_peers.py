@@ -19,9 +19,10 @@ import pytest
 import vibroimpact as vi
 from agreement import Against, Agrees
 from exported_drops import MASS, RADIUS, ROCK, STEEL, STIFFNESS, told, told_case
+from vibroimpact.contact.friction.registry import find_friction_law
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.pair import ContactPair, effective_modulus, effective_shear_modulus
-from vibroimpact.contact.registry import contact_laws, find_friction_law
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import find_export_format

@@ -10,8 +10,9 @@ from typing import Any
 
 from vibroimpact.app.messages import LONGEST
 from vibroimpact.cases.reader import shipped_cases
+from vibroimpact.contact.friction.registry import friction_laws
 from vibroimpact.contact.law import unit_of
-from vibroimpact.contact.registry import contact_laws, friction_laws
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.law_sheets.plain_math import plain_text
 from vibroimpact.law_sheets.text import law_text
 from vibroimpact.materials import material_library

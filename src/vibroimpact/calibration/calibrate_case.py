@@ -27,8 +27,9 @@ from vibroimpact.cases.fields.contact import read_contact
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.reader import case_of, load_table, prefix_errors
 from vibroimpact.contact.friction.law import FrictionLaw
+from vibroimpact.contact.friction.registry import friction_laws
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.contact.registry import find_contact_law, friction_laws
+from vibroimpact.contact.registry import find_contact_law
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError, listed

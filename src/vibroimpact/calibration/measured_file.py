@@ -47,9 +47,9 @@ from vibroimpact.measurements.recorded_table import RecordedChannel, recorded_ch
 from vibroimpact.measurements.table_file import factor_to_si, header_of
 from vibroimpact.measurements.table_layout import Layout
 from vibroimpact.signals.bounces.find import find_bounces
-from vibroimpact.signals.one_record import one_record
 from vibroimpact.signals.reading.coded_sound import FORMATS as CODED_SOUND
 from vibroimpact.signals.reading.equal_steps import behind_decimals
+from vibroimpact.signals.reading.one_record import one_record
 
 _MATCHABLE = {name: quantity.unit for name, quantity in MATCHABLE.items()}
 _COLUMNS = {

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 from vibroimpact.calibration.section import calibrate_table
 from vibroimpact.cases.elastic.positions import check_positions
-from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
-from vibroimpact.cases.fields.instruments import AT_REST, INSTRUMENTS
+from vibroimpact.cases.fields.elastic_body import ELASTIC_KEYS, BroughtMeshTable
 from vibroimpact.cases.fields.item_labels import item_label
 from vibroimpact.cases.fields.material import material_table
 from vibroimpact.cases.oblique import friction_law_of, oblique_keys
@@ -34,6 +33,8 @@ from vibroimpact.contact.speed_function import held
 from vibroimpact.dynamics.air import check_thin
 from vibroimpact.dynamics.liquid import check_sinks
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.sensors.instruments.instrument import SUBJECTS_AT_REST
+from vibroimpact.dynamics.sensors.registry import instruments
 from vibroimpact.errors import InputError
 from vibroimpact.resolved_case import ResolvedCase
 
@@ -121,7 +122,7 @@ def _check_sensors(case: CaseTable) -> None:
                 "sensors, or plate.radius",
                 "sensors",
             )
-        may_be_shaken = not any(sensor.instrument in AT_REST for sensor in case.sensors)
+        may_be_shaken = not any(sensor.subject in SUBJECTS_AT_REST for sensor in case.sensors)
         motion = " or motion" if may_be_shaken else ""
         raise InputError(
             "the plate is rigid and at rest, so that its points do not move; "
@@ -131,10 +132,11 @@ def _check_sensors(case: CaseTable) -> None:
     if case.plate.motion is None:
         return
     for number, sensor in enumerate(case.sensors):
-        if sensor.instrument in AT_REST:
+        if sensor.instrument is not None and sensor.subject in SUBJECTS_AT_REST:
             names = [{"name": sensor.name} for sensor in case.sensors]
+            noun = instruments()[sensor.instrument].noun
             raise InputError(
-                f"{INSTRUMENTS[sensor.instrument]} is for plates whose supports are at rest; "
+                f"{noun} is for plates whose supports are at rest; "
                 "leave out the sensor, or the motion",
                 f"{item_label('sensors', names, number)}.instrument",
             )
@@ -405,8 +407,7 @@ def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
         exclude_none=True, exclude={"material", "supports", "damping", "mesh"}
     )
     if section.model == "rigid":
-        keys = ("radius", "mass", "inertia", "size", "model", "inclination", "motion")
-        table = {key: table[key] for key in keys if key in table}
+        table = {key: value for key, value in table.items() if key not in ELASTIC_KEYS}
         if name == "plate" and is_free_sphere(case):
             table["supports"] = "free"
     else:

@@ -12,34 +12,25 @@ from typing import Any, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
-from vibroimpact.cases.fields.air import AirTable
 from vibroimpact.cases.fields.contact import law_of
 from vibroimpact.cases.fields.friction import check_friction_law
-from vibroimpact.cases.fields.liquid import LiquidTable
-from vibroimpact.cases.fields.local import LocalSection, MeasuredImpact
+from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.fields.material import InlineMaterial, material_table
 from vibroimpact.cases.fields.plate_motion import MotionTable
 from vibroimpact.cases.fields.quantities import Quantity, quantity_among, quantity_of
+from vibroimpact.cases.fields.section import Section
 from vibroimpact.cases.schema import SECTIONS
 from vibroimpact.cases.sensor_keys import holds_sensor_keys, named_sensor, sensor_keys, split_key
+from vibroimpact.contact.friction.registry import friction_laws
 from vibroimpact.contact.law import unit_of
-from vibroimpact.contact.registry import find_contact_law, friction_laws
+from vibroimpact.contact.registry import find_contact_law
 from vibroimpact.errors import InputError, choices, did_you_mean
 from vibroimpact.materials import find_material
 from vibroimpact.quoting import quoted
 from vibroimpact.ranges import Range
 
-_COMPONENTS = {
-    "position": ("x", "y"),
-    "velocity": ("x", "y", "z"),
-    "spin": ("x", "y", "z"),
-    "size": ("length", "width", "thickness"),
-    "direction": ("x", "y", "z"),
-}
-"""Names of the numbers of a list, such as x in "drop.position.x"."""
-
-_DEFAULT_ZEROS = {"position": 2, "velocity": 3, "spin": 3}
-"""Lists that a case need not have, of zeros then, and how many."""
+_DEFAULT_ZEROS = ("position", "velocity", "spin")
+"""Lists that a case need not have, of zeros then."""
 
 _DAMPING = Quantity("", "damping ratio", Range(at_least=0))
 
@@ -148,8 +139,7 @@ def holds_keys(key: str) -> bool:
     """
     section, _, field = key.partition(".")
     return holds_sensor_keys(key) or (
-        section in (*SECTIONS, "contact")
-        and field in ("", "material", "motion", "air", "liquid", "measured", *_COMPONENTS)
+        section in (*SECTIONS, "contact") and field in ("", "material", *_TABLES, *_COMPONENTS)
     )
 
 
@@ -227,7 +217,7 @@ def _holder(case: dict[str, Any], path: list[str], done: str) -> Any:
                 ".".join(path[:number]),
             )
         is_last = number == len(path) - 1
-        missing: Any = [0.0] * _DEFAULT_ZEROS[name] if name in _DEFAULT_ZEROS and is_last else {}
+        missing: Any = [0.0] * len(_COMPONENTS[name]) if name in _DEFAULT_ZEROS and is_last else {}
         holder = outer.setdefault(name, missing)
         if name in ("air", "liquid") and isinstance(holder, bool):
             holder = outer[name] = {}
@@ -273,32 +263,25 @@ def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
     if isinstance(contact, dict) and isinstance(contact.get("law"), str):
         yield from _keys_of_laws(contact)
     for field, info in LocalSection.model_fields.items():
-        yield f"contact.{field}", quantity_of(info)
-    for name, section in (("liquid", LiquidTable), ("measured", MeasuredImpact)):
-        for inner_key, inner in section.model_fields.items():
-            yield f"contact.{name}.{inner_key}", quantity_of(inner)
+        yield from _keys_of_field(f"contact.{field}", field, info)
 
 
 def _keys_of_field(key: str, field: str, info: FieldInfo) -> Iterator[tuple[str, Quantity | None]]:
     """Yield the key of a field of a section, and those of the list or table that it takes."""
-    if field in _COMPONENTS:
+    components = _elements(info.annotation)
+    if components:
         yield key, None
-        components = zip(_COMPONENTS[field], _elements(info.annotation), strict=True)
-        for component, annotation in components:
-            yield f"{key}.{component}", quantity_among((annotation,))
+        for quantity in components:
+            yield f"{key}.{quantity.meaning}", quantity
     else:
         yield key, _DAMPING if field == "damping" else quantity_of(info)
-    if field == "motion":
-        for inner_key, inner in MotionTable.model_fields.items():
-            yield f"{key}.{inner_key}", None if inner_key == "direction" else quantity_of(inner)
-    if field == "air":
-        for inner_key, inner in AirTable.model_fields.items():
-            yield f"{key}.{inner_key}", quantity_of(inner)
-    if field == "material":
-        for inner_key, inner in InlineMaterial.model_fields.items():
-            if inner_key != "name":
-                quantity = quantity_among((inner.annotation, *inner.metadata))
-                yield f"{key}.{inner_key}", quantity
+    table = InlineMaterial if field == "material" else _table_in(info)
+    if table is None:
+        return
+    for inner_key, inner in table.model_fields.items():
+        is_list = bool(_elements(inner.annotation))
+        if (field, inner_key) != ("material", "name"):
+            yield f"{key}.{inner_key}", None if is_list else quantity_of(inner)
 
 
 def _keys_of_laws(contact: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
@@ -320,10 +303,38 @@ def _quantity_of_parameter(item: Field[Any], unit: str) -> Quantity:
     return Quantity(unit, item.metadata["meaning"], item.metadata["range"])
 
 
-def _elements(annotation: Any) -> tuple[Any, ...]:
-    """Return the annotations of the elements of a tuple type, which may be optional."""
+def _elements(annotation: Any) -> tuple[Quantity, ...]:
+    """Return the quantities of the elements of a tuple type, which may be optional; none of any
+    other type.
+    """
     return next(
-        get_args(option)
-        for option in (annotation, *get_args(annotation))
-        if get_origin(option) is tuple
+        (
+            tuple(filter(None, (quantity_among((element,)) for element in get_args(option))))
+            for option in (annotation, *get_args(annotation))
+            if get_origin(option) is tuple
+        ),
+        (),
     )
+
+
+def _table_in(info: FieldInfo) -> type[Section] | None:
+    """Return the section of the table that a field takes; None if it takes none."""
+    options = (info.annotation, *get_args(info.annotation))
+    return next(
+        (option for option in options if isinstance(option, type) and issubclass(option, Section)),
+        None,
+    )
+
+
+_WITH_KEYS: tuple[type[Section], ...] = (*SECTIONS.values(), LocalSection, MotionTable)
+_FIELDS = [(name, info) for section in _WITH_KEYS for name, info in section.model_fields.items()]
+
+_COMPONENTS = {
+    name: tuple(quantity.meaning for quantity in components)
+    for name, info in _FIELDS
+    if (components := _elements(info.annotation))
+}
+"""Names of the numbers of a list, such as x in "drop.position.x"."""
+
+_TABLES = {name for name, info in _FIELDS if _table_in(info) is not None}
+"""Keys that take a table with keys that can be swept."""

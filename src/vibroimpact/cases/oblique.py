@@ -10,7 +10,7 @@ from vibroimpact.arrays import Array
 from vibroimpact.cases.fields.section import derived
 from vibroimpact.cases.pair import contact_pair
 from vibroimpact.contact.friction.law import FrictionLaw
-from vibroimpact.contact.registry import find_friction_law
+from vibroimpact.contact.friction.registry import find_friction_law
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.errors import InputError
 

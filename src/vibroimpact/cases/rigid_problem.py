@@ -24,8 +24,6 @@ from vibroimpact.errors import InputError
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import CaseTable
 
-_DEFAULT_IMPACTS = 5
-
 PLATE_FALLS = (
     "the supports let the plate fall or tilt: under gravity it falls away from under the "
     "sphere; hold it vertically, leave it rigid, or "
@@ -109,7 +107,7 @@ def impact_limit(case: CaseTable) -> int | None:
     None if it continues to rest or to a time.
     """
     if case.run.impacts is None:
-        return _DEFAULT_IMPACTS if run_duration(case) is None else None
+        return Problem.impacts if run_duration(case) is None else None
     return None if case.run.impacts == "all" else case.run.impacts
 
 

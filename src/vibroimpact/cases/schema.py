@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, StrictBool, model_validator
@@ -26,33 +26,18 @@ from vibroimpact.cases.fields.elastic_body import (
     check_plate,
     check_sphere_below,
 )
-from vibroimpact.cases.fields.instruments import (
-    INSTRUMENTS,
-    AccelerometerTable,
-    AmplifierTable,
-    ConverterTable,
-    ForceTable,
-    GeophoneTable,
-    MicrophoneTable,
-    StrainGaugeTable,
-    read_in_unit,
-)
 from vibroimpact.cases.fields.material import MaterialField
 from vibroimpact.cases.fields.plate_motion import MotionTable
 from vibroimpact.cases.fields.quantities import Quantity, UncertainQuantity
 from vibroimpact.cases.fields.section import Section, check_alternatives
+from vibroimpact.cases.fields.sensor import SensorSection
 from vibroimpact.cases.fields.size_limits import MOST_ITEMS, Name, at_most
 from vibroimpact.cases.fields.supports import SupportsField
 from vibroimpact.cases.wrong_units.lengths import likely_lengths
 from vibroimpact.dynamics.air import AIR_DENSITY
-from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY
-from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
-from vibroimpact.dynamics.sensors.instruments.force_sensor import ForceSensor
-from vibroimpact.dynamics.sensors.instruments.instrument import MOTIONS, Instrument
-from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
-from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
-from vibroimpact.dynamics.sensors.sensor import FILTERS, Sensor
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
+from vibroimpact.dynamics.tolerance import TOLERANCES
+from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID
 from vibroimpact.quoting import quoted
 from vibroimpact.ranges import Range
@@ -246,10 +231,10 @@ class DropSection(Section):
     )
     gravity: Annotated[
         float, UncertainQuantity("m/s^2", "acceleration of gravity", Range(at_least=0))
-    ] = STANDARD_GRAVITY
+    ] = Problem.gravity
     air: AirField = None
     same_spot: StrictBool = Field(
-        True,
+        Problem.same_spot,
         description="whether all impacts are at the same spot, with the dent of previous ones, or "
         "on undeformed surfaces",
     )
@@ -288,236 +273,13 @@ def _read_impacts(value: Any) -> Any:
     )
 
 
-_MEASURED_BY = {"strain": "strain-gauge", "pressure": "microphone", "force": "force"}
-"""Instruments by the quantity that no other measures."""
-
-_WITH_PROPERTIES = ("geophone", "microphone")
-"""Instruments that need a table."""
-
-_DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
-
-
-def _one_of(names: Collection[str]) -> BeforeValidator:
-    """Return the check of a name, whose message has the likely one.
-
-    A value that is no string is left to the type check of the field.
-    """
-
-    def read(value: Any) -> Any:
-        if not isinstance(value, str) or value in names:
-            return value
-        known = ", ".join(f'"{name}"' for name in names)
-        raise InputError(
-            f"{quoted(value)} is not allowed; it must be one of "
-            f"{known}.{did_you_mean(value, names)}"
-        )
-
-    return BeforeValidator(read)
-
-
-_Part = Annotated[float, Quantity("", "part of a direction")]
-
-
-class SensorSection(Section):
-    """A sensor at a point of the plate, or a microphone in the air."""
-
-    name: Name = Field(min_length=1, description="name of the sensor in tables and figures")
-    position: (
-        tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]] | Name
-    ) = Field(
-        description="x and y on the plate, from its centre [m]; or the name of a set of an "
-        "imported mesh"
-    )
-    face: Literal["upper", "lower"] = Field(
-        "upper", description="the face of the plate that it is on, or that a microphone measures"
-    )
-    instrument: Annotated[
-        Literal["accelerometer", "geophone", "strain-gauge", "microphone", "force"] | None,
-        _one_of(INSTRUMENTS),
-    ] = Field(
-        None,
-        description="type of the instrument; by default that of the table that is given, or "
-        "else an ideal sensor of the motion",
-    )
-    quantity: (
-        Literal[
-            "acceleration", "velocity", "displacement", "voltage", "strain", "pressure", "force"
-        ]
-        | None
-    ) = Field(
-        None,
-        description="measured quantity: acceleration by default, or the output of the instrument",
-    )
-    direction: Literal["x", "y", "z"] | tuple[_Part, _Part, _Part] = Field(
-        "z",
-        description='direction of measurement: "x", "y", "z" (upwards), or numbers along x, y and '
-        "z; of "
-        'a strain gauge "x" by default',
-    )
-    rate: Annotated[float, Quantity("Hz", "sampling rate", Range(above=0))] = 50e3
-    filter: Annotated[Literal["sigma-delta", "butterworth", "none"], _one_of(FILTERS)] = Field(
-        "sigma-delta", description="anti-alias filter"
-    )
-    corner: (
-        Annotated[
-            float,
-            Quantity(
-                "Hz",
-                "corner frequency of a Butterworth filter; 0.4 of the rate by default",
-                Range(above=0),
-            ),
-        ]
-        | None
-    ) = None
-    accelerometer: AccelerometerTable | None = Field(
-        None, description="resonance, range, noise, resolution and sensitivity of an accelerometer"
-    )
-    geophone: GeophoneTable | None = Field(
-        None, description="natural frequency, sensitivity, damping and low-pass of a geophone"
-    )
-    strain_gauge: StrainGaugeTable | None = Field(None, description="sensitivity of a strain gauge")
-    force: ForceTable | None = Field(
-        None,
-        description="sensitivity of a force sensor between the plate and the support at the "
-        "position",
-    )
-    microphone: MicrophoneTable | None = Field(
-        None, description="distance and sensitivity of a microphone, and its air"
-    )
-    amplifier: AmplifierTable | None = Field(
-        None, description="gain, noise and mains hum of the amplifier"
-    )
-    converter: ConverterTable | None = Field(
-        None, description="range and bits of the analogue-to-digital converter"
-    )
-
-    @model_validator(mode="after")
-    def _check_sensor(self) -> SensorSection:
-        if not isinstance(self.direction, str) and not any(self.direction):
-            raise InputError(
-                "it has no length; give x, y and z of the direction, such as [1, 0, 0]", "direction"
-            )
-        instrument = self._instrument()
-        if isinstance(instrument, StrainGauge):
-            self._lay_in_face()
-        if isinstance(instrument, Microphone) and self.direction not in ("z", (0.0, 0.0, 1.0)):
-            raise InputError(
-                "a microphone is omnidirectional; leave out the direction", "direction"
-            )
-        if instrument is None and self.quantity not in (None, *MOTIONS):
-            likely = _MEASURED_BY.get(str(self.quantity), "geophone")
-            example = f'instrument = "{likely}"'
-            if likely in _WITH_PROPERTIES:  # which their table gives
-                example = f"{likely} = {{ ... }}"
-            raise InputError(
-                f"{self.quantity} is the output of an instrument; name one, such as {example}",
-                "quantity",
-            )
-        if instrument is not None and self.quantity not in (None, instrument.quantity):
-            raise InputError(
-                f"{INSTRUMENTS[str(self.instrument)]} measures {instrument.quantity}; leave out "
-                f"quantity, or the {self.instrument}",
-                "quantity",
-            )
-        sensor = self.sensor()  # raises if the filter does not take a corner frequency
-        self.__dict__["quantity"] = sensor.quantity
-        for name, table in (("amplifier", self.amplifier), ("converter", self.converter)):
-            if table is not None:
-                try:
-                    read_in_unit(table, sensor.unit.replace("2", "^2"))
-                except InputError as error:
-                    raise InputError(error.message, f"{name}.{error.key}") from None
-        return self
-
-    def _lay_in_face(self) -> None:
-        """Let a strain gauge lie along x where its direction is not given.
-
-        Raises
-        ------
-        InputError
-            If its direction leaves the face.
-        """
-        if "direction" not in self.model_fields_set:
-            self.__dict__["direction"] = "x"
-        elif self.direction == "z" or (not isinstance(self.direction, str) and self.direction[2]):
-            raise InputError(
-                'a strain gauge lies in the face; give a direction along it, such as "x" or '
-                "[1, 1, 0]",
-                "direction",
-            )
-
-    def _instrument(self) -> Instrument | None:
-        """Return the instrument, which its table names where the key does not.
-
-        None if the motion is read as it is.
-        """
-        tables = {name: getattr(self, name.replace("-", "_")) for name in INSTRUMENTS}
-        stated = [name for name, table in tables.items() if table is not None]
-        name: str | None = self.instrument or next(iter(stated), None)
-        if name is None:
-            return None
-        self._check_one_instrument(name, stated)
-        self.__dict__["instrument"] = name
-        table = tables[name]
-        if table is not None:
-            instrument: Instrument = table.instrument()
-            return instrument
-        if name in _WITH_PROPERTIES:
-            raise InputError(
-                f"{INSTRUMENTS[name]} has properties; give them in a table {name} = {{ ... }}", name
-            )
-        ideal: dict[str, Instrument] = {
-            "accelerometer": Accelerometer(),
-            "strain-gauge": StrainGauge(),
-            "force": ForceSensor(),
-        }
-        return ideal[name]
-
-    def _check_one_instrument(self, name: str, stated: list[str]) -> None:
-        """Raise InputError if a table is that of another instrument than the one of a name.
-
-        `stated` are the instruments whose tables there are.
-        """
-        other = next((other for other in stated if other != name), None)
-        if other is None:
-            return
-        remedy = f', or take instrument = "{other}"'
-        if name in stated:
-            table = name.replace("-", "_")
-            remedy = f", or the table {table}" if self.instrument is None else ""
-        raise InputError(
-            f"its instrument is {INSTRUMENTS[name]}; leave out this table{remedy}",
-            other.replace("-", "_"),
-        )
-
-    def sensor(self) -> Sensor:
-        """Return the sensor, with its direction as a unit vector."""
-        direction = self.direction
-        if isinstance(direction, str):
-            direction = _DIRECTIONS[direction]
-        x, y, z = (component / math.hypot(*direction) for component in direction)
-        instrument = self._instrument()
-        quantity = self.quantity or ("acceleration" if instrument is None else instrument.quantity)
-        return Sensor(
-            self.name,
-            quantity,
-            (x, y, z),
-            self.rate,
-            instrument,
-            self.filter,
-            self.corner,
-            amplifier=None if self.amplifier is None else self.amplifier.amplifier(),
-            converter=None if self.converter is None else self.converter.converter(),
-        )
-
-
 class RunSection(Section):
     """When to stop, and how exact to be."""
 
     impacts: Annotated[int | Literal["all"] | None, BeforeValidator(_read_impacts)] = Field(
         None,
-        description='number of impacts after which the run ends; "all": until rest; by default 5, '
-        "or all if a duration or a motion ends it",
+        description='number of impacts after which the run ends; "all": until rest; by default '
+        f"{Problem.impacts}, or all if a duration or a motion ends it",
     )
     duration: (
         Annotated[float, Quantity("s", "time at which the run ends", Range(above=0))] | None
@@ -536,9 +298,9 @@ class RunSection(Section):
         Quantity(
             "",
             "relative error allowed in the state at the end of a contact",
-            Range(at_least=1e-13, at_most=1e-6),
+            TOLERANCES,
         ),
-    ] = 1e-9
+    ] = Problem.tolerance
 
 
 SECTIONS: dict[str, type[Section]] = {
@@ -590,13 +352,16 @@ class CaseTable(Section):
                     f"two sensors are called {quoted(name)}; each needs a name of its own",
                     "sensors",
                 )
-        # a microphone is in the air of the case unless it states its own
-        for sensor in self.sensors:
-            if sensor.microphone is not None and sensor.microphone.air_density is None:
-                sensor.microphone.__dict__["air_density"] = (
-                    AIR_DENSITY if self.drop.air is None else self.drop.air.density
-                )
+        self._fill_air()
         return self
+
+    def _fill_air(self) -> None:
+        """Let instruments be in the air of the case unless they state its density."""
+        density = AIR_DENSITY if self.drop.air is None else self.drop.air.density
+        for sensor in self.sensors:
+            stated = {} if sensor.table is None else sensor.table.__dict__
+            if "air_density" in stated and stated["air_density"] is None:
+                stated["air_density"] = density
 
     def _check_height(self) -> None:
         """Raise InputError if the sphere does not fall from its height."""

@@ -11,7 +11,7 @@ from vibroimpact.cases.fields.instruments import quantity_in_unit
 from vibroimpact.cases.fields.item_labels import item_label
 from vibroimpact.cases.fields.quantities import Quantity, quantity_of
 from vibroimpact.cases.fields.section import Section, read_table
-from vibroimpact.cases.schema import SensorSection
+from vibroimpact.cases.fields.sensor import SensorSection
 from vibroimpact.errors import InputError, choices
 from vibroimpact.quoting import quoted
 

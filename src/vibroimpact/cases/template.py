@@ -17,8 +17,9 @@ from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.fields.quantities import quantity_of
 from vibroimpact.cases.fields.section import Section
+from vibroimpact.cases.fields.sensor import SensorSection
 from vibroimpact.cases.reader import case_text, load_case, prefix_errors
-from vibroimpact.cases.schema import SECTIONS, SensorSection
+from vibroimpact.cases.schema import SECTIONS
 from vibroimpact.contact.law import default_origin, unit_of
 from vibroimpact.contact.registry import find_contact_law
 

@@ -170,7 +170,7 @@ def _listen(
     from vibroimpact.calibration.inputs import BRIEF
     from vibroimpact.files.reading import with_path
     from vibroimpact.signals.bounces.find import find_bounces
-    from vibroimpact.signals.one_record import one_record
+    from vibroimpact.signals.reading.one_record import one_record
 
     with exit_on_interrupt():
         contact_duration = BRIEF if contact is None else written_in("--contact", contact, "s")

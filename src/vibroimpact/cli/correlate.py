@@ -108,7 +108,7 @@ def correlate(
     """
     from vibroimpact.cases.reader import load_case
     from vibroimpact.files.result_folder import check_free
-    from vibroimpact.signals.record_files import load_records
+    from vibroimpact.signals.reading.record_files import load_records
     from vibroimpact.test_analysis.compared_kind import compared_kind
     from vibroimpact.test_analysis.correlate import correlate as correlate_records
 
@@ -171,7 +171,7 @@ def _force_among(records: list[Record], name: str) -> Record:
     InputError
         If there is none of this name, or several.
     """
-    from vibroimpact.signals.one_record import is_named
+    from vibroimpact.signals.reading.one_record import is_named
 
     named = [record for record in records if is_named(record, name)]
     if len(named) != 1:

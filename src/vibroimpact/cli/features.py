@@ -167,7 +167,7 @@ def _records(
     from vibroimpact.signals.baseline import without_baseline
     from vibroimpact.signals.onset import from_onset
     from vibroimpact.signals.packets import packet_records
-    from vibroimpact.signals.record_files import load_records
+    from vibroimpact.signals.reading.record_files import load_records
 
     told: set[str] = set()
     for path in paths:

@@ -124,7 +124,7 @@ def identify(
     from vibroimpact.files.result_folder import check_free
     from vibroimpact.identification.identify import identify as identify_impact
     from vibroimpact.identification.setup import SetupErrors
-    from vibroimpact.signals.record_files import load_records
+    from vibroimpact.signals.reading.record_files import load_records
 
     plate_case = load_case(case, settings_of(changes))
     target = Path(f"{stem(case)}-identified") if output is None else output

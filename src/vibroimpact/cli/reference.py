@@ -135,7 +135,8 @@ def laws(
     """List the contact and friction laws, or show one. With -o PNG the curves of a
     contact law are drawn.
     """
-    from vibroimpact.contact.registry import find_contact_law, friction_laws
+    from vibroimpact.contact.friction.registry import friction_laws
+    from vibroimpact.contact.registry import find_contact_law
     from vibroimpact.law_sheets.document import law_document, laws_document
     from vibroimpact.law_sheets.sheet import law_sheet, law_table
 

@@ -30,7 +30,7 @@ def parameter(
     example: float | None = None,
     **bounds: float,
 ) -> Any:
-    """Declare a parameter of a law.
+    """Declare a parameter of a law, or a property of an instrument.
 
     Parameters
     ----------

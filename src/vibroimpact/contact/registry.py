@@ -1,6 +1,5 @@
-"""The registries of contact and friction laws.
-
-They hold the laws of this package, and those of other packages by their entry points.
+"""The registry of contact laws: those of this package, and those of other packages by their entry
+points.
 """
 
 from __future__ import annotations
@@ -10,7 +9,6 @@ from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import TypeVar, cast
 
-from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.parameters import Parameters
 from vibroimpact.errors import InputError
@@ -35,37 +33,21 @@ def contact_laws() -> Mapping[str, type[ContactLaw]]:
     >>> "hertz" in contact_laws()
     True
     """
-    return _laws("contact law", ContactLaw, "vibroimpact.contact.laws", "vibroimpact.contact_laws")
+    return registered_laws(
+        "contact law", ContactLaw, "vibroimpact.contact.laws", "vibroimpact.contact_laws"
+    )
 
 
-@cache
-def friction_laws() -> Mapping[str, type[FrictionLaw]]:
-    """Return all friction laws by name.
+def registered_laws(kind: str, base: type[Law], package: str, group: str) -> dict[str, type[Law]]:
+    """Return the laws of a kind by name.
 
-    They are those of this package and of the entry points "vibroimpact.friction_laws".
+    They are those of the modules of a package, and of a group of entry points.
 
     Raises
     ------
     InputError
-        If two laws have the same name, or an entry point can't be loaded or is not a friction law.
-
-    Examples
-    --------
-    >>> "mdr" in friction_laws()
-    True
-    """
-    return _laws(
-        "friction law",
-        FrictionLaw,
-        "vibroimpact.contact.friction.laws",
-        "vibroimpact.friction_laws",
-    )
-
-
-def _laws(kind: str, base: type[Law], package: str, group: str) -> dict[str, type[Law]]:
-    """Return the laws of a kind by name.
-
-    They are those of the modules of a package, and of a group of entry points.
+        If two laws have the same name, or an entry point can't be loaded or is not a law of this
+        kind.
     """
     laws: list[type[Law]] = []
     for module in modules_in(package):
@@ -134,21 +116,3 @@ def find_contact_law(name: str) -> type[ContactLaw]:
     if not isinstance(name, str):
         raise InputError(f"a contact law is found by its name, a text, not {name!r}")
     return find_named("contact law", name, contact_laws(), "laws")
-
-
-def find_friction_law(name: str) -> type[FrictionLaw]:
-    """Return the friction law with a name.
-
-    Raises
-    ------
-    InputError
-        If there is none; the message names the closest.
-
-    Examples
-    --------
-    >>> find_friction_law("mdr").__name__
-    'MDR'
-    """
-    if not isinstance(name, str):
-        raise InputError(f"a friction law is found by its name, a text, not {name!r}")
-    return find_named("friction law", name, friction_laws(), "laws")

@@ -9,10 +9,13 @@ from typing import Literal, NamedTuple
 class Column(NamedTuple):
     """A column of the impact table or of a history.
 
-    `unit` (SI), `meaning`: as files tell them. `label`: its header on a page; of an energy, its
-    entry in the ledger. `short`: its header in a terminal; of an energy, its name in a legend.
-    `values`: what kind they are, which sets how they are written. `in_ledger`: does it share the
-    energy put in? `is_loss`: is that energy gone?
+    `unit` (SI), `meaning`: as files tell them. `label`: its header on a page, which one that is
+    shown there has; of an energy, its entry in the ledger. `short`: its header in a terminal; of an
+    energy, its name in a legend. `values`: what kind they are, which sets how they are written.
+    `certain_as`: the outcome of the impact, the arrival, which the previous outcome sets, or exact,
+    unaffected by a perturbation of the drop. `shown_before`: the column that it is shown before,
+    where it does not follow those above it. `in_ledger`: does it share the energy put in?
+    `is_loss`: is that energy gone?
     """
 
     unit: str
@@ -20,6 +23,8 @@ class Column(NamedTuple):
     label: str = ""
     short: str = ""
     values: Literal["quantity", "time", "ratio", "count", "factor"] = "quantity"
+    certain_as: Literal["outcome", "arrival", "exact"] = "outcome"
+    shown_before: str = ""
     in_ledger: bool = False
     is_loss: bool = False
 
@@ -38,14 +43,15 @@ def _lost(meaning: str, label: str, short: str) -> Column:
 
 
 IMPACT_COLUMNS: dict[str, Column] = {
-    "impact": Column("1", "number of the impact, from 1", "Impact", "#", "count"),
-    "time_s": Column("s", "time of first touch", "First touch", "time", "time"),
+    "impact": Column("1", "number of the impact, from 1", "Impact", "#", "count", "exact"),
+    "time_s": Column("s", "time of first touch", "First touch", "time", "time", "arrival"),
     "duration_s": Column("s", "duration of contact", "Contact duration", "contact"),
     "approach_speed_m_s": Column(
         "m/s",
         "speed at first touch, downwards; relative to a plate that is free or shaken",
         "Approach speed",
         "approach",
+        certain_as="arrival",
     ),
     "separation_speed_m_s": Column(
         "m/s",
@@ -88,6 +94,8 @@ IMPACT_COLUMNS: dict[str, Column] = {
         "Restitution asked",
         "e\u00a0asked",
         "ratio",
+        "exact",
+        shown_before="restitution_achieved",
     ),
     "time_of_max_indentation_s": Column("s", "time of the largest indentation"),
     "time_of_max_force_s": Column("s", "time of the largest contact force"),
@@ -107,6 +115,7 @@ VIBRATION_IMPACT_COLUMNS: dict[str, Column] = {
         "Contacts in the impact",
         "contacts",
         "count",
+        "exact",
     ),
     "energy_to_vibration_J": Column(
         "J",
@@ -120,6 +129,7 @@ VIBRATION_IMPACT_COLUMNS: dict[str, Column] = {
         "Sensitivity",
         "sensitivity",
         "factor",
+        "exact",
     ),
 }
 """Further columns of the impact table, where a body vibrates."""
@@ -334,6 +344,29 @@ ALL_IMPACT_COLUMNS = {
     **CARRIED_IMPACT_COLUMNS,
     **FLUID_IMPACT_COLUMNS,
 }
+
+
+def _shown() -> tuple[str, ...]:
+    """Return the columns with a label: of every run, of motion along the plate, of fluids, of
+    vibration.
+    """
+    columns = {
+        **IMPACT_COLUMNS,
+        **OBLIQUE_IMPACT_COLUMNS,
+        **FLUID_IMPACT_COLUMNS,
+        **VIBRATION_IMPACT_COLUMNS,
+        **ALL_IMPACT_COLUMNS,
+    }
+    names = [name for name, column in columns.items() if column.label and not column.shown_before]
+    for name, column in columns.items():
+        if column.shown_before:
+            names.insert(names.index(column.shown_before), name)
+    return tuple(names)
+
+
+SHOWN_IMPACT_COLUMNS = _shown()
+"""Columns of the impact table that tables show, in their order."""
+
 OBLIQUE_HISTORY_COLUMNS: dict[str, Column] = {
     "position_x_m": Column(
         "m", "position of the sphere's centre along x, from the mean position of the plate's centre"

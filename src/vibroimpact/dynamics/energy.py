@@ -61,10 +61,10 @@ def closure_in_words(relative: float) -> str:
     >>> closure_in_words(2.6e-8)
     'closure 3e-8 of the energy put in'
     """
-    if relative < CLOSURE_USUAL:
-        return "closure below 1e-9 of the energy put in"
-    mantissa, _, exponent = f"{relative:.0e}".partition("e")
-    return f"closure {mantissa}e{int(exponent)} of the energy put in"
+    is_usual = relative < CLOSURE_USUAL
+    mantissa, _, exponent = f"{CLOSURE_USUAL if is_usual else relative:.0e}".partition("e")
+    below = "below " if is_usual else ""
+    return f"closure {below}{mantissa}e{int(exponent)} of the energy put in"
 
 
 def why_failed(energy: Mapping[str, Any]) -> str:

@@ -25,7 +25,7 @@ from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.dynamics.shaken.statement import PlateMotion
 from vibroimpact.dynamics.shaken.steady import steady_phasors
-from vibroimpact.dynamics.tolerance import check_tolerance
+from vibroimpact.dynamics.tolerance import DEFAULT_TOLERANCE, check_tolerance
 from vibroimpact.errors import InputError
 from vibroimpact.resolved_case import ResolvedCase
 
@@ -156,7 +156,7 @@ class Problem:
     quasi_static: QuasiStatic = QuasiStatic()
     local_element: tuple[float, float] | None = None
     sensors: tuple[Sensor, ...] = ()
-    tolerance: float = 1e-9
+    tolerance: float = DEFAULT_TOLERANCE
     sensitivity: bool = True
     source: ResolvedCase | None = field(default=None, compare=False)
     facts: Mapping[str, float | str] = field(default_factory=dict, compare=False)

@@ -17,7 +17,7 @@ from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.roots import solve_monotonic
 from vibroimpact.dynamics.impact_conditions import impact_conditions_of
 from vibroimpact.dynamics.rigid.line_contact import FEW, release_rates
-from vibroimpact.dynamics.tolerance import check_tolerance
+from vibroimpact.dynamics.tolerance import DEFAULT_TOLERANCE, check_tolerance
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.ranges import Range
 
@@ -27,7 +27,7 @@ _INVERSE_TOLERANCE = 1e-12
 
 
 def achieved_restitution(
-    law: ContactLaw, mass: Array, speed: Array, *, tolerance: float = 1e-9
+    law: ContactLaw, mass: Array, speed: Array, *, tolerance: float = DEFAULT_TOLERANCE
 ) -> Array:
     """Return the restitution that a law achieves.
 
@@ -79,7 +79,7 @@ def achieved_restitution(
 
 
 def integrated_restitution(
-    law: ContactLaw, mass: Array, speed: Array, *, tolerance: float = 1e-9
+    law: ContactLaw, mass: Array, speed: Array, *, tolerance: float = DEFAULT_TOLERANCE
 ) -> Array:
     """Return the restitution that a law achieves, by integrating the contact.
 

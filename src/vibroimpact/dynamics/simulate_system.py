@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Bools, Floats
+from vibroimpact.dynamics.energy import CLOSURE_LIMIT
 from vibroimpact.dynamics.status import end_in_words
 from vibroimpact.dynamics.system import System
 from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition
@@ -22,7 +23,6 @@ from vibroimpact.dynamics.vibrating.time_marching import TimeMarching
 from vibroimpact.errors import ComputationError, InputError
 
 _LONGEST = 1e9  # seconds
-_CLOSURE = 1e-6  # largest relative error of the energy balance
 
 
 @dataclass(frozen=True)
@@ -319,11 +319,11 @@ def simulate_system(
     }
     # an independent check of the integration
     energy = _ledger(linear, start, march)
-    if not energy["closure_relative"] <= _CLOSURE:
+    if not energy["closure_relative"] <= CLOSURE_LIMIT:
         raise ComputationError(
             "the energy ledger does not close: "
             f"it is off by {energy['closure_relative']:.2g} of the energy of "
-            f"the motion (limit {_CLOSURE:g})"
+            f"the motion (limit {CLOSURE_LIMIT:g})"
         )
     return SystemResponse(system, columns, energy, duration, march)
 

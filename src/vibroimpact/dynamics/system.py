@@ -18,7 +18,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.dynamics.tolerance import check_tolerance
+from vibroimpact.dynamics.tolerance import DEFAULT_TOLERANCE, check_tolerance
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.errors import InputError, did_you_mean
 
@@ -223,7 +223,7 @@ class System:
     bodies: Mapping[str, MovingBody]
     contacts: Mapping[str, PointContact]
     gravity: Any = (0.0, 0.0, 0.0)
-    tolerance: float = 1e-9
+    tolerance: float = DEFAULT_TOLERANCE
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "gravity", _vector("gravity", self.gravity))

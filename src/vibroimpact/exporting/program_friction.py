@@ -12,9 +12,9 @@ import numpy as np
 
 from vibroimpact.bodies.rigid_bodies import rigid_plate
 from vibroimpact.contact.friction.law import CompliantFriction, FrictionLaw
+from vibroimpact.contact.friction.registry import find_friction_law
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.pair import hertz_stiffness
-from vibroimpact.contact.registry import find_friction_law
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError

@@ -18,8 +18,8 @@ from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.quoting import quoted
 from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.clipped import clipped_samples
-from vibroimpact.signals.one_record import is_named
 from vibroimpact.signals.onset import onset_time
+from vibroimpact.signals.reading.one_record import is_named
 from vibroimpact.signals.record import Record, Removed
 from vibroimpact.units.display import digits
 

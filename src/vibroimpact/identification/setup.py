@@ -14,7 +14,6 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
-from vibroimpact.dynamics.sensors.instruments.force_sensor import ForceSensor
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError
 from vibroimpact.structures.modal_model import ModalBasis
@@ -187,9 +186,9 @@ def stretched(problem: Problem, setup: Setup, exponents: Floats) -> Problem:
     # of what a sensor reads, over the deflection
     reading = dict.fromkeys(modes.points, 1.0)
     for sensor in problem.sensors:
-        if sensor.sees_strain:
+        if sensor.subject == "strain":
             reading[sensor.name] = thickness
-        elif isinstance(sensor.instrument, ForceSensor):
+        elif sensor.subject == "support":
             reading[sensor.name] = 1.0 / compliance
     changed = replace(
         modes,

@@ -9,8 +9,9 @@ from dataclasses import asdict, fields
 from typing import Any
 
 from vibroimpact.contact.friction.law import FrictionLaw
+from vibroimpact.contact.friction.registry import friction_laws
 from vibroimpact.contact.law import ContactLaw
-from vibroimpact.contact.registry import contact_laws, friction_laws
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.law_sheets.text import ParameterText, asked_and_achieved, law_text, plain_paragraph
 
 

@@ -11,8 +11,9 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from vibroimpact.contact.friction.registry import friction_laws
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
-from vibroimpact.contact.registry import contact_laws, find_contact_law, friction_laws
+from vibroimpact.contact.registry import contact_laws, find_contact_law
 from vibroimpact.law_sheets.text import (
     SPEED,
     LawText,

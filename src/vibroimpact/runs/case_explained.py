@@ -15,8 +15,9 @@ from vibroimpact.cases.costs import describe_costs
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of, first_restitution
 from vibroimpact.cases.fields.fluid import fluid_words
-from vibroimpact.cases.fields.instruments import INSTRUMENTS, AccelerometerTable
 from vibroimpact.cases.fields.quantities import quantity_of
+from vibroimpact.cases.fields.section import Section
+from vibroimpact.cases.fields.sensor import SensorSection
 from vibroimpact.cases.oblique import friction_law_of, is_oblique
 from vibroimpact.cases.pair import ball_of, contact_pair, is_free_sphere, sphere_density
 from vibroimpact.cases.plate_motion import motion_length
@@ -31,10 +32,11 @@ from vibroimpact.cases.rigid_problem import (
     run_duration,
     touch_speed,
 )
-from vibroimpact.cases.schema import SensorSection
 from vibroimpact.contact.law import CompliantLaw, unit_of
 from vibroimpact.dynamics.liquid import restitution_kept
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
+from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.registry import instruments
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.report.terminal_report import warning_lines
 from vibroimpact.report.terminal_table import facts
@@ -278,7 +280,7 @@ def _coupling_rows(case: Case) -> list[tuple[str, str]]:
         )
         where = (
             f"of the support at {place}"
-            if sensor.instrument == "force"
+            if sensor.subject == "support"
             else f"at {place}, {sensor.face} face"
         )
         words = [
@@ -296,13 +298,14 @@ def _instrument(sensor: SensorSection) -> list[str]:
     """Return a description of a sensor's instrument; empty without one."""
     if sensor.instrument is None:
         return []
+    stated = sensor.instrument_in_case()
     words = "; ".join(
-        _accelerometer(sensor.accelerometer) if sensor.accelerometer else _properties(sensor)
+        _accelerometer(stated) if isinstance(stated, Accelerometer) else _properties(sensor.table)
     )
-    return [f"by {INSTRUMENTS[sensor.instrument]} ({words or 'ideal'})"]
+    return [f"by {instruments()[sensor.instrument].noun} ({words or 'ideal'})"]
 
 
-def _accelerometer(meter: AccelerometerTable) -> list[str]:
+def _accelerometer(meter: Accelerometer) -> list[str]:
     """Return the properties of an accelerometer in words."""
     given = [
         ("resonance", meter.resonance, f"Hz with a damping ratio of {meter.damping_ratio:g}"),
@@ -318,17 +321,14 @@ def _accelerometer(meter: AccelerometerTable) -> list[str]:
     return [f"{name} {value:g} {unit}" for name, value, unit in given if value is not None]
 
 
-def _properties(sensor: SensorSection) -> list[str]:
+def _properties(table: Section | None) -> list[str]:
     """Return the properties of another instrument in words."""
-    table = getattr(sensor, str(sensor.instrument).replace("-", "_"))
-    given = (
-        [
-            (name, getattr(table, name), quantity_of(info))
-            for name, info in type(table).model_fields.items()
-        ]
-        if table
-        else []
-    )
+    if table is None:
+        return []
+    given = [
+        (name, getattr(table, name), quantity_of(info))
+        for name, info in type(table).model_fields.items()
+    ]
     words = [
         (name.replace("_", " "), value, "" if quantity is None else quantity.unit.replace("^", ""))
         for name, value, quantity in given

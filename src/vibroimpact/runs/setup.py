@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.cases.fields.fluid import fluid_words
-from vibroimpact.cases.fields.instruments import INSTRUMENTS
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Arrow, Label, Line, Mark, Outline
+from vibroimpact.contact.friction.registry import friction_laws
 from vibroimpact.contact.law import unit_of
-from vibroimpact.contact.registry import contact_laws, friction_laws
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.contact.speed_function import of_table
+from vibroimpact.dynamics.sensors.registry import instruments
 from vibroimpact.quoting import shortened, visible
 from vibroimpact.results.result import Result
 from vibroimpact.runs.below import body_below, level_below
@@ -270,7 +271,7 @@ def setup_rows(result: Result) -> list[tuple[str, str]]:
     if (friction := case["contact"].get("friction")) is not None:
         rows.append(("Friction", _law_words(friction)))
     for one in case.get("sensors", ()):
-        by = f" by {INSTRUMENTS[one['instrument']]}" if "instrument" in one else ""
+        by = f" by {instruments()[one['instrument']].noun}" if "instrument" in one else ""
         words = (
             f"{one['quantity']}{by} at {_place(one['position'])}, "
             f"{as_given(float(one['rate']), 'Hz')}"

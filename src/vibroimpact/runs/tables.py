@@ -20,6 +20,7 @@ from vibroimpact.dynamics.columns import (
     LEDGER_COLUMNS,
     OBLIQUE_LEDGER,
     SHAKEN_LEDGER,
+    SHOWN_IMPACT_COLUMNS,
     VIBRATION_LEDGER,
 )
 from vibroimpact.report.report import Column, Gap, Table, table_of
@@ -58,38 +59,6 @@ _FIRST_LEFT_OUT = (
 
 _FIGURES_SHOWN = 6  # significant figures in a table
 _DIGITS = 5
-
-_EXACT = ("impact", "contacts", "restitution_asked", "sensitivity")
-_ARRIVAL = ("time_s", "approach_speed_m_s")
-"""Columns unaffected by a perturbation of the drop, and those as certain as the outcome
-of the previous impact.
-"""
-
-_SHOWN_COLUMNS = (
-    "impact",
-    "time_s",
-    "duration_s",
-    "approach_speed_m_s",
-    "separation_speed_m_s",
-    "restitution_asked",
-    "restitution_achieved",
-    "max_indentation_m",
-    "max_force_N",
-    "max_acceleration_m_s2",
-    "rebound_height_m",
-    "energy_lost_J",
-    "tangential_restitution",
-    "rebound_angle_deg",
-    "friction_lost_J",
-    "microslip_lost_J",
-    "air_lost_J",
-    "liquid_lost_J",
-    "contacts",
-    "sensitivity",
-)
-"""Columns shown of the impact table. Restitution asked is shown only where a law asks for one, that
-of contacts only if a visit has several, caused by vibration of the plate or the sphere, and that of
-sensitivity only if it reduces the number of certain figures."""
 
 _ROUNDING = 1e-12
 """Part of the energy put in up to which an energy is a rounding error."""
@@ -175,8 +144,9 @@ def shown_columns(result: Result) -> list[str]:
     """Return the names of the columns of the impact table that are shown for a result: those that
     have a value.
 
-    An instantaneous law has neither a duration nor an indentation, and a contact that slides
-    throughout no microslip.
+    Contacts are shown only if an impact has several, and the sensitivity only if it reduces the
+    number of certain figures. An instantaneous law has neither a duration nor an indentation, and a
+    contact that slides throughout no microslip.
     """
     impacts = result.impacts
     told = {
@@ -188,7 +158,7 @@ def shown_columns(result: Result) -> list[str]:
     told["microslip_lost_J"] = bool(np.any(microslip > _ROUNDING * result.energy["input_J"]))
     return [
         name
-        for name in _SHOWN_COLUMNS
+        for name in SHOWN_IMPACT_COLUMNS
         if told.get(name, True) and np.isfinite(impacts.get(name, np.nan)).any()
     ]
 
@@ -335,11 +305,12 @@ def significant_figures(name: str, change: Floats) -> Indices:
     ... )
     ([17, 3], [17, 17])
     """
-    if name in _EXACT:
+    certain_as = ALL_IMPACT_COLUMNS[name].certain_as
+    if certain_as == "exact":
         return np.full(len(change), ALL_FIGURES)
-    return certain_figures(
-        np.concatenate([change[:1], change[:-1]]) if name in _ARRIVAL else change
-    )
+    if certain_as == "arrival":
+        change = np.concatenate([change[:1], change[:-1]])
+    return certain_figures(change)
 
 
 def impact_text(result: Result, impact: int, name: str, unit: str) -> str:

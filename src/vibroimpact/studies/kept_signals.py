@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.schema import SensorSection
+from vibroimpact.cases.fields.sensor import SensorSection
 from vibroimpact.cases.sensor_keys import sensors_of
 from vibroimpact.errors import InputError
 from vibroimpact.studies.drop_variables import SENSOR_PEAK, SIGNAL, SIGNAL_START

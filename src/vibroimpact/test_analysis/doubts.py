@@ -10,9 +10,9 @@ from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.quoting import quoted
 from vibroimpact.signals.delay import Delay
-from vibroimpact.signals.flat_tops import clipped_count
 from vibroimpact.test_analysis.acquired import LEAD, Acquired
 from vibroimpact.test_analysis.excitation import Excited, is_excited
+from vibroimpact.test_analysis.flat_tops import clipped_count
 
 _ALIKE = 0.7
 """Correlation coefficient below which the delay may be off by a period."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pickle
-from typing import get_type_hints
 
 import pytest
 
@@ -11,16 +10,7 @@ import vibroimpact as vi
 from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.rigid_problem import contact_laws_of
-from vibroimpact.cases.schema import SECTIONS, SensorSection
 from vibroimpact.contact.law import ContactLaw
-from vibroimpact.resolved_case import (
-    ResolvedCase,
-    ResolvedDrop,
-    ResolvedPlate,
-    ResolvedRun,
-    ResolvedSensor,
-    ResolvedSphere,
-)
 
 
 def test_a_run_makes_the_laws_of_a_case_once(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -56,17 +46,3 @@ def test_they_are_no_part_of_the_case() -> None:
     assert case == fresh
     assert case.model_dump() == fresh.model_dump()
     assert pickle.loads(pickle.dumps(case)) == fresh
-
-
-def test_the_types_of_a_resolved_case_have_the_keys_of_its_sections() -> None:
-    tables = {
-        "sphere": ResolvedSphere,
-        "plate": ResolvedPlate,
-        "drop": ResolvedDrop,
-        "run": ResolvedRun,
-    }
-    assert tables.keys() == SECTIONS.keys()
-    for name, table in tables.items():
-        assert get_type_hints(table).keys() == SECTIONS[name].model_fields.keys(), name
-    assert get_type_hints(ResolvedSensor).keys() == SensorSection.model_fields.keys()
-    assert get_type_hints(ResolvedCase).keys() == vi.Case.model_fields.keys()

@@ -27,9 +27,9 @@ from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, meanings
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sensor import Sensor
-from vibroimpact.exporting import export_result as module
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import find_export_format
+from vibroimpact.exporting.export_result import default_output
 from vibroimpact.exporting.formats.matlab import legal_names
 from vibroimpact.exporting.formats.uff58 import history_rate
 from vibroimpact.exporting.load_drop import drop_of_result, load_drop
@@ -820,8 +820,8 @@ def test_a_name_of_dots_goes_beside_the_folder_itself(
     result_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(result_folder)
-    assert module.default_output(".", "csv") == tmp_path / "drop-csv"
-    assert module.default_output("../drop", "csv") == Path("../drop-csv")
+    assert default_output(".", "csv") == tmp_path / "drop-csv"
+    assert default_output("../drop", "csv") == Path("../drop-csv")
 
 
 def test_the_command(

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
 from xml.etree import ElementTree
@@ -16,6 +16,7 @@ import pytest
 
 from exported_drops import MASS, RADIUS, STIFFNESS, told, told_case
 from vibroimpact.contact.friction.laws.mindlin import MindlinForce
+from vibroimpact.contact.friction.registry import find_friction_law
 from vibroimpact.contact.hysteretic import HystereticLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
@@ -24,7 +25,8 @@ from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.contact.registry import contact_laws, find_friction_law
+from vibroimpact.contact.parameters import parameter
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.restitution import achieved_restitution
@@ -38,6 +40,34 @@ TSUJI = Tsuji(stiffness=STIFFNESS, restitution=0.7, effective_mass=MASS)
 PAIR = ContactPair(
     effective_modulus=2.4265e9, effective_radius=RADIUS, effective_mass=MASS, poissons_ratio=0.28
 )
+
+
+@dataclass(frozen=True, kw_only=True)
+class WithOffset(HystereticLaw):
+    """A law whose damping factor has a parameter beside the restitution."""
+
+    name = "with-offset"
+    equation = "F = K delta^n [1 + (c + (1 - e) / sqrt(e)) delta_dot / v0]"
+    source = "nobody"
+
+    offset: float = parameter("offset", at_least=0)
+
+    @property
+    def damping_factor(self) -> Any:
+        return self.offset + (1.0 - self.restitution) / np.sqrt(self.restitution)
+
+
+@dataclass(frozen=True, kw_only=True)
+class InPieces(HystereticLaw):
+    """A law with one damping factor for soft, and another for hard impacts."""
+
+    name = "in-pieces"
+    equation = "F = K delta^n [1 + D delta_dot / v0]"
+    source = "nobody"
+
+    @property
+    def damping_factor(self) -> Any:
+        return np.where(self.restitution < 0.5, 1.0, 2.0 * (1.0 - self.restitution))
 
 
 def text_of(form: Any, drop: Drop) -> str:
@@ -296,7 +326,7 @@ class TestExudyn:
         exec(re.sub(r"import exudyn as exu\nfrom exudyn.*?\)\n", "", head, flags=re.DOTALL), made)
         return made
 
-    @pytest.mark.parametrize("name", sorted(exudyn._FORCES))
+    @pytest.mark.parametrize("name", exudyn.laws_of_exudyn())
     def test_force_is_the_laws(self, name: str) -> None:
         law = contact_laws()[name].example(PAIR)
         made = self.functions(told(law))
@@ -311,9 +341,32 @@ class TestExudyn:
                     wanted, rel=1e-12
                 )
 
-    def test_every_hysteretic_law_is_there(self) -> None:
-        names = {name for name, law in contact_laws().items() if issubclass(law, HystereticLaw)}
-        assert names == set(exudyn._FACTORS)
+    def test_damping_factors_are_formulas_of_the_laws(self) -> None:
+        hysteretic = {
+            name: law for name, law in contact_laws().items() if issubclass(law, HystereticLaw)
+        }
+        assert len(hysteretic) >= 9
+        assert hysteretic.keys() <= set(exudyn.laws_of_exudyn())
+        for name, kind in hysteretic.items():
+            law = kind.example(PAIR)
+            text = text_of(exudyn.FORMAT, told(law))
+            (formula,) = re.findall(r"factor = (.*)", text)
+            for e in np.random.default_rng(1).uniform(0.05, 1.0, 20):
+                value = eval(formula, {"math": math, "e": float(e)})
+                wanted = law.changed({"restitution": float(e)}).damping_factor
+                assert value == pytest.approx(float(wanted), rel=1e-15), name
+
+    def test_a_hysteretic_law_of_another_package_is_written(self) -> None:
+        law = WithOffset(stiffness=STIFFNESS, restitution=0.7, offset=0.25)
+        assert "factor = p.offset + (1.0 - e) / math.sqrt(e)\n" in text_of(exudyn.FORMAT, told(law))
+        made = self.functions(told(law))
+        force = made["contact_force"](3e-5, 0.5, 2.0, made["parameters"](0, 2.0))
+        assert force == pytest.approx(float(sum(law.forces(3e-5, 0.5, 2.0))), rel=1e-12)
+
+    def test_refuses_a_damping_factor_in_pieces(self) -> None:
+        law = InPieces(stiffness=STIFFNESS, restitution=0.7)
+        with pytest.raises(InputError, match="in-pieces can't be written for EXUDYN, as its"):
+            exudyn.FORMAT.write(told(law))
 
     def test_values_of_impacts_and_function(self) -> None:
         drop = told_case("paper:type1-variable")

@@ -8,6 +8,7 @@ import json
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -270,7 +271,8 @@ def test_a_force_that_contradicts_the_contact_is_withheld(
     wild = replace(
         found.force, found=replace(found.force.found, force=2.0 * found.force.found.force)
     )
-    monkeypatch.setattr("vibroimpact.identification.identify.force_behind", lambda *_: wild)
+    module = import_module("vibroimpact.identification.identify")
+    monkeypatch.setattr(module, "force_behind", lambda *_: wild)
     withheld = vi.identification.identify(a_case(), measured())
     assert withheld.force is None
     assert not any(name.startswith("recovered") for name in withheld.estimates)

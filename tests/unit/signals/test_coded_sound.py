@@ -14,7 +14,7 @@ import pytest
 
 import vibroimpact as vi
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
-from vibroimpact.signals.record_files import load_records
+from vibroimpact.signals.reading.record_files import load_records
 
 RATE, GRAVITY, HEIGHT, RESTITUTION = 48_000, 9.81, 0.3, 0.8
 LOSSY = {

@@ -22,10 +22,10 @@ from hammer_test import RATE, SOFT, TABLE, a_case, hammered, knocked, knocked_ca
 from support import plain_case
 from vibroimpact.signals.decay.find import DecayMode
 from vibroimpact.signals.estimate import Estimate
-from vibroimpact.signals.flat_tops import clipped_count
 from vibroimpact.signals.record import Record
 from vibroimpact.test_analysis.acquired import acquired_of
 from vibroimpact.test_analysis.correlate import Correlation
+from vibroimpact.test_analysis.flat_tops import clipped_count
 from vibroimpact.test_analysis.mode_pairs import paired
 from vibroimpact.test_analysis.shared_differences import shared_differences
 

@@ -17,6 +17,7 @@ from vibroimpact.cases.fields.section import derived
 from vibroimpact.cases.fields.supports import supports_of, supports_table
 from vibroimpact.cases.rigid_problem import elastic_names
 from vibroimpact.dynamics.sensors.antialias import FINENESS
+from vibroimpact.dynamics.sensors.instruments.microphone import MicrophoneInCase
 from vibroimpact.errors import InputError
 from vibroimpact.structures.recipe import ImportedMesh, Recipe, mesh_features
 from vibroimpact.structures.rectangle import rectangle_blocks
@@ -102,11 +103,11 @@ def _plate(case: CaseTable) -> ElasticBody:
     strained = {}
     pressed = {}
     for sensor in case.sensors:
-        if sensor.instrument == "strain-gauge":
+        if sensor.subject == "strain":
             strained[sensor.name] = (sensor.position, sensor.face)
-        elif sensor.instrument == "force":
+        elif sensor.subject == "support":
             pressed[sensor.name] = (sensor.position, sensor.face)
-        elif sensor.microphone is None:
+        elif sensor.subject == "motion":
             watched[sensor.name] = (sensor.position, sensor.face)
     return ElasticBody(
         _plate_recipe(case, contact),
@@ -122,17 +123,18 @@ def _plate(case: CaseTable) -> ElasticBody:
 
 def _heard(case: CaseTable) -> dict[str, Listener]:
     """Return where the microphones are, by the names of their sensors."""
-    return {
-        sensor.name: Listener(
-            sensor.position,
-            sensor.face,
-            sensor.microphone.distance,
-            sensor.microphone.speed_of_sound,
-            1.0 / (FINENESS * sensor.rate),
-        )
-        for sensor in case.sensors
-        if sensor.microphone is not None
-    }
+    listeners = {}
+    for sensor in case.sensors:
+        microphone = sensor.instrument_in_case()
+        if isinstance(microphone, MicrophoneInCase):
+            listeners[sensor.name] = Listener(
+                sensor.position,
+                sensor.face,
+                microphone.distance,
+                microphone.speed_of_sound,
+                1.0 / (FINENESS * sensor.rate),
+            )
+    return listeners
 
 
 def _plate_recipe(case: CaseTable, contact: Spot) -> Recipe:

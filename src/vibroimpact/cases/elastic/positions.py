@@ -39,7 +39,7 @@ def check_positions(case: CaseTable) -> None:
                     f'only a plate with a mesh file has sets, such as "{sensor.position}"; '
                     "give x and y"
                 )
-            if sensor.microphone is None:
+            if sensor.subject != "sound":
                 _check_point(sensor.position, half, "position")
         except InputError as error:
             names = [{"name": sensor.name} for sensor in case.sensors]

@@ -264,7 +264,7 @@ MethodField = Literal["modal", "craig-bampton"]
 _ROUNDED = 1e-3
 """Relative difference of a mass or a moment of inertia from a solid sphere's that is rounding."""
 
-_ELASTIC_KEYS = (
+ELASTIC_KEYS = (
     "modes",
     "max_frequency",
     "damping",
@@ -274,6 +274,7 @@ _ELASTIC_KEYS = (
     "attachment_mode",
     "element",
 )
+"""Keys of a body that a rigid one does not take."""
 
 
 def check_elastic(section: Any) -> None:
@@ -285,7 +286,7 @@ def check_elastic(section: Any) -> None:
         With the invalid key.
     """
     if section.model == "rigid":
-        for key in _ELASTIC_KEYS:
+        for key in ELASTIC_KEYS:
             value = getattr(section, key, None)
             if value in (None, False):
                 continue

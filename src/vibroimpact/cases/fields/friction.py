@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from vibroimpact.cases.fields.quantities import quantity_schema, read_quantity
-from vibroimpact.contact.registry import find_friction_law, friction_laws
+from vibroimpact.contact.friction.registry import find_friction_law, friction_laws
 from vibroimpact.errors import InputError, choices, did_you_mean
 from vibroimpact.quoting import quoted
 

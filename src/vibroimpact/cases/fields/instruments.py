@@ -2,179 +2,63 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import inspect
+from dataclasses import MISSING, dataclass, fields
+from dataclasses import Field as DataclassField
 from typing import Annotated, Any
 
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, create_model
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
 from vibroimpact.cases.fields.quantities import Quantity, read_quantity
 from vibroimpact.cases.fields.section import Section
-from vibroimpact.dynamics.air import AIR_DENSITY
 from vibroimpact.dynamics.sensors.electronics import Amplifier, Converter
-from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
-from vibroimpact.dynamics.sensors.instruments.force_sensor import ForceSensor
-from vibroimpact.dynamics.sensors.instruments.geophone import Geophone
-from vibroimpact.dynamics.sensors.instruments.instrument import Instrument
-from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
-from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
+from vibroimpact.dynamics.sensors.instruments.instrument import InstrumentInCase
+from vibroimpact.dynamics.sensors.registry import instruments
 from vibroimpact.errors import InputError
 from vibroimpact.ranges import Range
-
-INSTRUMENTS = {
-    "accelerometer": "an accelerometer",
-    "geophone": "a geophone",
-    "strain-gauge": "a strain gauge",
-    "microphone": "a microphone",
-    "force": "a force sensor",
-}
-"""What instruments are called in a case, where the key of their table has "_" for "-",
-and in a sentence.
-"""
-
-AT_REST = ("force", "microphone")
-"""Instruments for plates whose supports are at rest."""
-SPEED_OF_SOUND = 343.2  # m/s, of dry air at 20 C: sqrt(1.4 * 287.05 J/(kg K) * 293.15 K)
-# m: the paths of sound to a closer point would take long to integrate, and no microphone is as
-# small
-_NEAREST = 1e-3
+from vibroimpact.registry import class_named
 
 Seed = Annotated[int, Field(ge=0, strict=True)]
 
 
-class AccelerometerTable(Section):
-    """What an accelerometer adds to the acceleration of its base: its resonance, then its
-    range; its noise and its steps.
-    """
-
-    resonance: (
-        Annotated[float, Quantity("Hz", "mounted resonance frequency", Range(above=0))] | None
-    ) = None
-    damping_ratio: Annotated[
-        float, Quantity("", "damping ratio of the resonance", Range(above=0))
-    ] = 0.02
-    range: (
-        Annotated[
-            float,
-            Quantity("m/s^2", "measuring range: largest magnitude of its output", Range(above=0)),
-        ]
-        | None
-    ) = None
-    noise: Annotated[
-        float,
-        Quantity("m/s^2", "standard deviation of the noise in its samples", Range(at_least=0)),
-    ] = 0.0
-    resolution: (
-        Annotated[float, Quantity("m/s^2", "resolution: step of its output", Range(above=0))] | None
-    ) = None
-    seed: Seed = Field(0, description="of the noise")
-    sensitivity: (
-        Annotated[
-            float,
-            Quantity(
-                "V s^2/m", "voltage over acceleration; its output is then a voltage", Range(above=0)
-            ),
-        ]
-        | None
-    ) = None
-
-    def instrument(self) -> Instrument:
-        """Return the accelerometer."""
-        return Accelerometer(**self.model_dump())
+def _table_of(kind: type[InstrumentInCase]) -> type[Section]:
+    """Return the section of a case for the table of an instrument."""
+    title = "".join(word.capitalize() for word in kind.name.split("-"))
+    description = (inspect.getdoc(kind) or "").split("\n\n")[0]
+    keys: dict[str, Any] = {item.name: _field_of(item) for item in fields(kind)}
+    return create_model(
+        f"{title}Table", __base__=Section, __module__=__name__, __doc__=description, **keys
+    )
 
 
-class GeophoneTable(Section):
-    """A geophone: the voltage of a coil on a spring."""
-
-    natural_frequency: Annotated[
-        float, Quantity("Hz", "natural frequency of the coil on its spring", Range(above=0))
-    ]
-    sensitivity: Annotated[
-        float,
-        Quantity("V s/m", "voltage over velocity, far above the natural frequency", Range(above=0)),
-    ]
-    damping_ratio: Annotated[
-        float, Quantity("", "damping ratio of the coil, with its shunt", Range(above=0))
-    ] = 0.6
-    low_pass: (
-        Annotated[
-            float,
-            Quantity("Hz", "corner frequency of a second-order low-pass after it", Range(above=0)),
-        ]
-        | None
-    ) = None
-
-    def instrument(self) -> Instrument:
-        """Return the geophone."""
-        return Geophone(**self.model_dump())
+def _field_of(item: DataclassField[Any]) -> tuple[Any, Any]:
+    """Return annotation and default of a property of an instrument, as pydantic takes them."""
+    meaning, allowed = item.metadata["meaning"], item.metadata["range"]
+    if isinstance(item.default, int):
+        return Seed, Field(item.default, description=meaning)
+    annotation = Annotated[float, Quantity(item.metadata["unit"], meaning, allowed)]
+    if item.default is MISSING:
+        return annotation, ...
+    return (annotation | None if item.default is None else annotation), item.default
 
 
-class StrainGaugeTable(Section):
-    """A strain gauge on a face of the plate, along a direction in it."""
-
-    sensitivity: (
-        Annotated[
-            float,
-            Quantity("V", "voltage over strain; its output is then a voltage", Range(above=0)),
-        ]
-        | None
-    ) = None
-
-    def instrument(self) -> Instrument:
-        """Return the strain gauge."""
-        return StrainGauge(**self.model_dump())
+TABLES = {kind.key(): _table_of(kind) for kind in instruments().values()}
+"""The sections of the tables of instruments, by the keys of these in a sensor."""
 
 
-class MicrophoneTable(Section):
-    """A microphone in the air beyond a face of the plate."""
-
-    distance: Annotated[
-        float, Quantity("m", "distance from the plane of the face", Range(at_least=_NEAREST))
-    ]
-    sensitivity: (
-        Annotated[
-            float,
-            Quantity(
-                "V/Pa", "voltage over sound pressure; its output is then a voltage", Range(above=0)
-            ),
-        ]
-        | None
-    ) = None
-    air_density: (
-        Annotated[
-            float,
-            Quantity(
-                "kg/m^3",
-                "density of the air; by default that of `drop.air`, or that at 20 C",
-                Range(above=0),
-            ),
-        ]
-        | None
-    ) = None
-    speed_of_sound: Annotated[
-        float, Quantity("m/s", "speed of sound in the air; by default that at 20 C", Range(above=0))
-    ] = SPEED_OF_SOUND
-
-    def instrument(self) -> Instrument:
-        """Return the microphone."""
-        return Microphone(self.sensitivity, self.air_density or AIR_DENSITY)
+def __getattr__(name: str) -> type[Section]:
+    return class_named(TABLES, name, __name__)  # as a pickled case asks for them
 
 
-class ForceTable(Section):
-    """A force sensor between the plate and the support at its position."""
-
-    sensitivity: (
-        Annotated[
-            float,
-            Quantity("V/N", "voltage over force; its output is then a voltage", Range(above=0)),
-        ]
-        | None
-    ) = None
-
-    def instrument(self) -> Instrument:
-        """Return the force sensor."""
-        return ForceSensor(**self.model_dump())
+def instrument_fields() -> dict[str, tuple[Any, Any]]:
+    """Return the fields of a sensor for the tables of instruments, those on the plate first."""
+    kinds = sorted(instruments().values(), key=lambda kind: kind.subject == "sound")
+    return {
+        kind.key(): (TABLES[kind.key()] | None, Field(None, description=kind.properties))
+        for kind in kinds
+    }
 
 
 @dataclass(frozen=True)
@@ -201,17 +85,17 @@ class _OfSignal:
 class AmplifierTable(Section):
     """An amplifier behind the instrument: gain, and noise and hum at its input."""
 
-    gain: Annotated[float, Quantity("", "gain: output over input", Range(above=0))] = 1.0
+    gain: Annotated[float, Quantity("", "gain: output over input", Range(above=0))] = Amplifier.gain
     noise: Annotated[
         float, _OfSignal("standard deviation of white noise at its input", Range(at_least=0))
-    ] = 0.0
+    ] = Amplifier.noise
     hum: Annotated[
         float,
         _OfSignal(
             "amplitude of the mains hum at its input, with a random phase", Range(at_least=0)
         ),
-    ] = 0.0
-    mains: Annotated[float, Quantity("Hz", "mains frequency", Range(above=0))] = 50.0
+    ] = Amplifier.hum
+    mains: Annotated[float, Quantity("Hz", "mains frequency", Range(above=0))] = Amplifier.mains
     seed: Seed = Field(0, description="of the noise and of the hum's phase")
 
     def amplifier(self) -> Amplifier:

@@ -19,7 +19,6 @@ from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.antialias import FINENESS, HALF_LENGTH, antialias_of
 from vibroimpact.dynamics.sensors.filtered_chain import add_responses, filtered_chain
-from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, measuring_chain
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
@@ -180,7 +179,7 @@ def _check(sensors: Sequence[Sensor]) -> None:
     if len({sensor.rate for sensor in sensors}) > 1:
         raise InputError("the sensors have different rates; take sensors of one rate", "sensors")
     for sensor in sensors:
-        if isinstance(sensor.instrument, Microphone):
+        if sensor.subject == "sound":
             raise InputError(
                 f'sensor "{sensor.name}": a microphone measures the sound of the whole '
                 "plate; use sensors on it",

@@ -14,8 +14,7 @@ from vibroimpact.dynamics.sensors.antialias import FINENESS, antialias_of, gain_
 from vibroimpact.dynamics.sensors.electronics import amplified, seeds
 from vibroimpact.dynamics.sensors.filtered_chain import filtered_chain
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
-from vibroimpact.dynamics.sensors.instruments.force_sensor import ForceSensor
-from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
+from vibroimpact.dynamics.sensors.instruments.instrument import SUBJECTS_AT_REST
 from vibroimpact.dynamics.sensors.measuring_chain import (
     MeasuringChain,
     measuring_chain,
@@ -93,7 +92,7 @@ def record(
     groups: dict[tuple[float, str, float | None, tuple[Section, ...]], list[Sensor]] = {}
     signals: dict[str, Signal] = {}
     for sensor in sensors:
-        if isinstance(sensor.instrument, Microphone):
+        if sensor.subject == "sound":
             plate = _plate(problem, ports)
             count = sample_count(end, sensor.rate)
             value, uncertainty = heard(problem, plate, ports, segments, sensor, count)
@@ -120,7 +119,7 @@ def _check(problem: Problem, sensors: Sequence[Sensor], end: float) -> None:
             "sensors",
         )
     for sensor in sensors:
-        if isinstance(sensor.instrument, (ForceSensor, Microphone)) and problem.motion is not None:
+        if sensor.subject in SUBJECTS_AT_REST and problem.motion is not None:
             raise InputError(
                 "microphones and force sensors are for plates whose supports are at rest; leave "
                 "out the sensor, or the motion",
@@ -151,7 +150,7 @@ def _check_point(modes: ModalBasis | None, sensor: Sensor) -> None:
     """
     if modes is None:
         return
-    if not isinstance(sensor.instrument, Microphone):
+    if sensor.subject != "sound":
         if sensor.name not in modes.points:
             raise InputError(f'the modes of the plate have no point "{sensor.name}"', "sensors")
         return

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Literal, get_args
 
 from vibroimpact.dynamics.sensors.electronics import Amplifier, Converter, seeds
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
@@ -12,13 +13,14 @@ from vibroimpact.dynamics.sensors.instruments.instrument import (
     Direction,
     Instrument,
     Quantity,
+    Subject,
 )
-from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
-from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
 from vibroimpact.dynamics.sensors.pole_pairs import Section
 from vibroimpact.errors import InputError, did_you_mean
 
-FILTERS = ("sigma-delta", "butterworth", "none")
+Filter = Literal["sigma-delta", "butterworth", "none"]
+DEFAULT_FILTER: Filter = "sigma-delta"
+FILTERS: tuple[Filter, ...] = get_args(Filter)
 """The anti-alias filters that a sensor may have."""
 
 _CORNER = 0.4  # default corner of a Butterworth filter, relative to the rate
@@ -76,7 +78,7 @@ class Sensor:
     direction: Direction = (0.0, 0.0, 1.0)
     rate: float = 50e3
     instrument: Instrument | None = None
-    filter: str = "sigma-delta"
+    filter: str = DEFAULT_FILTER
     corner: float | None = None
     amplifier: Amplifier | None = None
     converter: Converter | None = None
@@ -95,13 +97,13 @@ class Sensor:
                 f"{known}.{did_you_mean(self.filter, FILTERS)}",
                 "filter",
             )
-        if isinstance(self.instrument, Microphone) and self.filter != "sigma-delta":
+        if self.subject == "sound" and self.filter != "sigma-delta":
             raise InputError(
                 'a microphone has the filter "sigma-delta"; leave out the filter', "filter"
             )
         if self.corner is not None and self.filter != "butterworth":
             # a microphone has no other filter
-            other = "" if isinstance(self.instrument, Microphone) else ', or take "butterworth"'
+            other = "" if self.subject == "sound" else ', or take "butterworth"'
             raise InputError(
                 f'the filter "{self.filter}" takes no corner; leave it out{other}', "corner"
             )
@@ -139,9 +141,9 @@ class Sensor:
         return self.instrument.components(self.direction)
 
     @property
-    def sees_strain(self) -> bool:
-        """Whether it sees the strain of the plate, and not its motion."""
-        return isinstance(self.instrument, StrainGauge)
+    def subject(self) -> Subject:
+        """What it is sensitive to."""
+        return "motion" if self.instrument is None else self.instrument.subject
 
     @property
     def steepness(self) -> float:

@@ -88,7 +88,7 @@ def _phasors(motion: PlateMotion, modes: ModalBasis | None, sensor: Sensor) -> C
     """
     direction = np.asarray(sensor.components)
     # the supports move the plate as a whole, which does not strain it
-    along = 0.0 if sensor.sees_strain else float(direction @ motion.direction)
+    along = 0.0 if sensor.subject == "strain" else float(direction @ motion.direction)
     supports = along * motion.phasors
     if modes is None:
         return supports

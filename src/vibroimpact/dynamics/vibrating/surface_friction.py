@@ -15,9 +15,9 @@ from vibroimpact.dynamics.core.surface_friction_records import SlidingSphere
 from vibroimpact.dynamics.core.tangential_history import TangentialHistory
 from vibroimpact.dynamics.oblique.state import Sphere, State
 from vibroimpact.dynamics.oblique.tangential_history import tangential_history
+from vibroimpact.dynamics.tolerance import DEFAULT_TOLERANCE
 
 _LONGEST_STRETCH = 0.03  # of the duration of a contact, at the default tolerance
-_DEFAULT_TOLERANCE = 1e-9
 _ORDER = 4  # of the error in the length of stretches, about
 
 
@@ -87,7 +87,7 @@ def longest_with_friction(tolerance: float) -> float:
     show. At the default tolerance the velocities along the plate after an impact are then known to
     1e-4 of those before.
     """
-    ratio: float = (tolerance / _DEFAULT_TOLERANCE) ** (1.0 / _ORDER)
+    ratio: float = (tolerance / DEFAULT_TOLERANCE) ** (1.0 / _ORDER)
     return _LONGEST_STRETCH * ratio
 
 

@@ -10,33 +10,22 @@ from dataclasses import fields
 from typing import NamedTuple
 
 from vibroimpact.contact.friction.law import FrictionLaw
+from vibroimpact.contact.hysteretic import HystereticLaw
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
 from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import approach_speeds, first_contact, shared_notes
 from vibroimpact.exporting.deck import number, render_deck
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, file_name
+from vibroimpact.exporting.formula import Formula
 from vibroimpact.exporting.program_friction import COULOMB, friction_in, friction_notes
 from vibroimpact.exporting.rigid_drop import as_rigid
 from vibroimpact.files.plain_names import plain_words
 from vibroimpact.ranges import Range
-
-# damping factor D of the laws F = K delta^n (1 + D rate / approach), as a function of the requested
-# restitution e
-_FACTORS = {
-    "flores": "1.6 * (1.0 - e) / e",
-    "gonthier": "(1.0 - e * e) / e",
-    "herbert-mcwhannell": "6.0 * (1.0 - e) / ((2.0 * e - 1.0) ** 2 + 3.0)",
-    "hu-guo": "1.5 * (1.0 - e) / e",
-    "hunt-crossley": "1.5 * (1.0 - e)",
-    "lankarani-nikravesh": "0.75 * (1.0 - e * e)",
-    "lee-wang": "0.75 * (1.0 - e)",
-    "safaeifar": "1.25 * (1.0 - e) / e",
-    "zhiying-qishao": "0.75 * (1.0 - e * e) * math.exp(2.0 * (1.0 - e))",
-}
 
 # without adams-poisson: its force jumps at maximum compression, where an integrator with adaptive
 # steps gets stuck
@@ -48,9 +37,8 @@ _FORCES = {
     "kuwabara-kono",
     "linear-spring-dashpot",
     "tsuji",
-    *_FACTORS,
 }
-"""Laws whose force the template has."""
+"""Laws whose force the template has, beside that of all hysteretic laws."""
 
 _CREEP = 1e-4
 """Slip below which friction is proportional to it, over the first approach speed."""
@@ -71,12 +59,41 @@ def _force_model(law: ContactLaw) -> str:
         return "constant dashpot"
     if isinstance(law, HuntCrossley) and law.dissipation is not None:
         return "constant dissipation"
+    if isinstance(law, HystereticLaw):
+        return "hysteretic"
     if law.name not in _FORCES:
         raise InputError(
-            f"{law.name} can't be written for EXUDYN; {', '.join(sorted(_FORCES))} can. "
+            f"{law.name} can't be written for EXUDYN; {', '.join(laws_of_exudyn())} can. "
             'Take one of them, with the parameter that "vibroimpact calibrate" finds'
         )
     return law.name
+
+
+def laws_of_exudyn() -> list[str]:
+    """Return the names of the contact laws that can be written, sorted."""
+    hysteretic = {name for name, law in contact_laws().items() if issubclass(law, HystereticLaw)}
+    return sorted(_FORCES | hysteretic)
+
+
+def _damping_factor(law: HystereticLaw) -> str:
+    """Return the damping factor of a hysteretic law as a formula of Python.
+
+    In it `e` is the restitution asked for, and other parameters are attributes of `p`.
+
+    Raises
+    ------
+    InputError
+        If the law has different formulas for different restitutions.
+    """
+    symbols = {item.name: Formula(f"p.{item.name}") for item in fields(law)}
+    symbols["restitution"] = Formula("e")
+    try:
+        factor = law.changed(symbols).damping_factor
+    except TypeError as error:
+        raise InputError(
+            f"{law.name} can't be written for EXUDYN, as its damping factor is no single formula"
+        ) from error
+    return factor.text if isinstance(factor, Formula) else number(factor)
 
 
 def _parameters(drop: Drop) -> list[_Parameter]:
@@ -151,7 +168,11 @@ def _deck(drop: Drop) -> str:
         impacts=len(speeds),
         contact_duration=duration,
         force_model=force_model,
-        damping_factor=_FACTORS.get(law.name),
+        damping_factor=(
+            _damping_factor(law)
+            if isinstance(law, HystereticLaw) and force_model == "hysteretic"
+            else ""
+        ),
         parameters=_parameters(drop),
         fitted_parameter=fitted_parameter,
         fitted_value=_fitted_value(drop),

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError, did_you_mean, listed
 from vibroimpact.quoting import quoted
@@ -210,21 +209,21 @@ def _of_impact(
 def _axis_fits(sensor: Sensor, end: DegreeOfFreedom) -> bool:
     return (
         end.direction == 0
-        or sensor.sees_strain
+        or sensor.subject == "strain"
         or abs(sensor.direction[abs(end.direction) - 1]) > _ALONG
     )
 
 
 def _sense(sensor: Sensor, end: DegreeOfFreedom) -> float:
     """Return 1, or -1 where the response is measured against the direction of a sensor."""
-    if end.direction == 0 or sensor.sees_strain:
+    if end.direction == 0 or sensor.subject == "strain":
         return 1.0
     return 1.0 if end.direction * sensor.direction[abs(end.direction) - 1] > 0.0 else -1.0
 
 
 def unit_of(sensor: Sensor) -> str:
     """Return the unit of the frequency response of a sensor."""
-    return "1/N" if sensor.sees_strain else f"{sensor.unit}/N"
+    return "1/N" if sensor.subject == "strain" else f"{sensor.unit}/N"
 
 
 def _check_unit(sensor: Sensor, response: FrequencyResponse) -> None:
@@ -232,7 +231,7 @@ def _check_unit(sensor: Sensor, response: FrequencyResponse) -> None:
 
     One of a sensor without an instrument may be of any motion.
     """
-    if isinstance(sensor.instrument, Microphone):
+    if sensor.subject == "sound":
         raise InputError(
             f"{quoted(sensor.name)} is a microphone, which hears the whole plate; leave it out",
             "sensors",

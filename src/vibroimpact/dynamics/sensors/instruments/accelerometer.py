@@ -5,13 +5,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from vibroimpact.dynamics.sensors.instruments.instrument import Direction, Quantity
+from vibroimpact.contact.parameters import parameter
+from vibroimpact.dynamics.sensors.instruments.instrument import (
+    Direction,
+    InstrumentInCase,
+    Quantity,
+)
 from vibroimpact.dynamics.sensors.pole_pairs import Section
 
 
 @dataclass(frozen=True)
-class Accelerometer:
-    """Properties of an accelerometer.
+class Accelerometer(InstrumentInCase):
+    """What an accelerometer adds to the acceleration of its base: its resonance, then its
+    range; its noise and its steps.
 
     Parameters
     ----------
@@ -37,13 +43,30 @@ class Accelerometer:
     ('acceleration', 'voltage')
     """
 
-    resonance: float | None = None
-    damping_ratio: float = 0.02
-    range: float | None = None
-    noise: float = 0.0
-    resolution: float | None = None
-    seed: int | tuple[int, ...] = 0
-    sensitivity: float | None = None
+    name = "accelerometer"
+    noun = "an accelerometer"
+    properties = "resonance, range, noise, resolution and sensitivity of an accelerometer"
+    measures = "acceleration"
+    subject = "motion"
+
+    resonance: float | None = parameter("mounted resonance frequency", "Hz", above=0, default=None)
+    damping_ratio: float = parameter("damping ratio of the resonance", above=0, default=0.02)
+    range: float | None = parameter(
+        "measuring range: largest magnitude of its output", "m/s^2", above=0, default=None
+    )
+    noise: float = parameter(
+        "standard deviation of the noise in its samples", "m/s^2", at_least=0, default=0.0
+    )
+    resolution: float | None = parameter(
+        "resolution: step of its output", "m/s^2", above=0, default=None
+    )
+    seed: int | tuple[int, ...] = parameter("of the noise", at_least=0, default=0)
+    sensitivity: float | None = parameter(
+        "voltage over acceleration; its output is then a voltage",
+        "V s^2/m",
+        above=0,
+        default=None,
+    )
 
     @property
     def quantity(self) -> Quantity:

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from vibroimpact.contact.parameters import parameter
 from vibroimpact.dynamics.sensors.instruments.instrument import Direction, Quantity
 from vibroimpact.dynamics.sensors.instruments.proportional import Proportional
 
 
 @dataclass(frozen=True)
 class ForceSensor(Proportional):
-    """A force sensor between the plate and a support, with neither mass nor compliance of its own.
+    """A force sensor between the plate and the support at its position.
+
+    It has neither mass nor compliance of its own.
 
     Parameters
     ----------
@@ -22,6 +25,16 @@ class ForceSensor(Proportional):
     >>> ForceSensor().quantity, ForceSensor(sensitivity=0.01).quantity
     ('force', 'voltage')
     """
+
+    name = "force"
+    noun = "a force sensor"
+    properties = "sensitivity of a force sensor between the plate and the support at the position"
+    measures = "force"
+    subject = "support"
+
+    sensitivity: float | None = parameter(
+        "voltage over force; its output is then a voltage", "V/N", above=0, default=None
+    )
 
     @property
     def quantity(self) -> Quantity:

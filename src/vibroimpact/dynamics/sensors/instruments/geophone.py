@@ -15,13 +15,20 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from vibroimpact.dynamics.sensors.instruments.instrument import Direction, Quantity
+from vibroimpact.contact.parameters import parameter
+from vibroimpact.dynamics.sensors.instruments.instrument import (
+    Direction,
+    InstrumentInCase,
+    Quantity,
+)
 from vibroimpact.dynamics.sensors.pole_pairs import Section
 
 
 @dataclass(frozen=True)
-class Geophone:
-    """A geophone on the plate, too light to change its motion.
+class Geophone(InstrumentInCase):
+    """A geophone: the voltage of a coil on a spring.
+
+    It is on the plate, too light to change its motion.
 
     Parameters
     ----------
@@ -42,10 +49,24 @@ class Geophone:
     ('voltage', 27.6)
     """
 
-    natural_frequency: float
-    sensitivity: float
-    damping_ratio: float = 0.6
-    low_pass: float | None = None
+    name = "geophone"
+    noun = "a geophone"
+    properties = "natural frequency, sensitivity, damping and low-pass of a geophone"
+    measures = "voltage"
+    subject = "motion"
+
+    natural_frequency: float = parameter(
+        "natural frequency of the coil on its spring", "Hz", above=0
+    )
+    sensitivity: float = parameter(
+        "voltage over velocity, far above the natural frequency", "V s/m", above=0
+    )
+    damping_ratio: float = parameter(
+        "damping ratio of the coil, with its shunt", above=0, default=0.6
+    )
+    low_pass: float | None = parameter(
+        "corner frequency of a second-order low-pass after it", "Hz", above=0, default=None
+    )
 
     @property
     def quantity(self) -> Quantity:

@@ -1,8 +1,9 @@
-"""The interface of instruments to the measuring chain, and the quantities that they measure."""
+"""The interface of instruments to cases and to the measuring chain, and what they measure."""
 
 from __future__ import annotations
 
-from typing import Literal, Protocol
+from dataclasses import MISSING, dataclass, fields
+from typing import ClassVar, Literal, Protocol, cast
 
 from vibroimpact.dynamics.sensors.pole_pairs import Section
 
@@ -22,6 +23,12 @@ UNITS: dict[Quantity, str] = {
 MOTIONS: dict[Quantity, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}
 """Order of the derivative of the displacement that each quantity of a point in motion is."""
 Direction = tuple[float, float, float]
+Subject = Literal["motion", "strain", "support", "sound"]
+"""What an instrument is sensitive to: the motion of a point, the strain of a face, the force of a
+support, or the sound in front of a face.
+"""
+SUBJECTS_AT_REST = ("support", "sound")
+"""Subjects of instruments for plates whose supports are at rest."""
 
 
 class Instrument(Protocol):
@@ -29,6 +36,10 @@ class Instrument(Protocol):
 
     Its output is :math:`y = g\,s^n \prod_k \frac{k_k}{s^2 + d_k s + k_k}\,u`.
     """
+
+    @property
+    def subject(self) -> Subject:
+        """What it is sensitive to."""
 
     @property
     def quantity(self) -> Quantity:
@@ -58,3 +69,40 @@ class Instrument(Protocol):
 
         `direction`: of the instrument.
         """
+
+
+@dataclass(frozen=True)
+class InstrumentInCase:
+    """What a case may say of an instrument: the base of instruments, which are one file each.
+
+    The fields of a subclass, declared with `parameter`, are the keys of its table; the first
+    paragraph of its docstring describes the table.
+    """
+
+    name: ClassVar[str]
+    """The value of `instrument`; with "_" for "-" the key of the table."""
+
+    noun: ClassVar[str]
+    """What it is called in a sentence, with its article."""
+
+    properties: ClassVar[str]
+    """What the table gives, in a few words."""
+
+    measures: ClassVar[Quantity]
+    """What it puts out unless a sensitivity makes this a voltage."""
+
+    subject: ClassVar[Subject]
+
+    @classmethod
+    def key(cls) -> str:
+        """Return the key of the table."""
+        return cls.name.replace("-", "_")
+
+    @classmethod
+    def needs_table(cls) -> bool:
+        """Return whether it has properties without a default."""
+        return any(item.default is MISSING for item in fields(cls))
+
+    def instrument(self) -> Instrument:
+        """Return the instrument as the measuring chain takes it."""
+        return cast("Instrument", self)  # of which a case says all, unless a subclass says more

@@ -4,9 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from vibroimpact.contact.parameters import parameter
 from vibroimpact.dynamics.air import AIR_DENSITY
-from vibroimpact.dynamics.sensors.instruments.instrument import Direction, Quantity
+from vibroimpact.dynamics.sensors.instruments.instrument import (
+    Direction,
+    Instrument,
+    InstrumentInCase,
+    Quantity,
+    Subject,
+)
 from vibroimpact.dynamics.sensors.pole_pairs import Section
+
+SPEED_OF_SOUND = 343.2  # m/s, of dry air at 20 C: sqrt(1.4 * 287.05 J/(kg K) * 293.15 K)
+# m: the paths of sound to a closer point would take long to integrate, and no microphone is as
+# small
+_NEAREST = 1e-3
 
 
 @dataclass(frozen=True)
@@ -30,6 +42,11 @@ class Microphone:
 
     sensitivity: float | None = None
     air_density: float = AIR_DENSITY
+
+    @property
+    def subject(self) -> Subject:
+        """It hears the plate."""
+        return "sound"
 
     @property
     def quantity(self) -> Quantity:
@@ -62,3 +79,38 @@ class Microphone:
     def components(self, direction: Direction) -> Direction:
         """Return the weights of the displacements along x, y and z."""
         return direction
+
+
+@dataclass(frozen=True)
+class MicrophoneInCase(InstrumentInCase):
+    """A microphone in the air beyond a face of the plate.
+
+    A case states its place as well, from which the paths of sound are computed.
+    """
+
+    name = "microphone"
+    noun = "a microphone"
+    properties = "distance and sensitivity of a microphone, and its air"
+    measures = "pressure"
+    subject = "sound"
+
+    distance: float = parameter("distance from the plane of the face", "m", at_least=_NEAREST)
+    sensitivity: float | None = parameter(
+        "voltage over sound pressure; its output is then a voltage", "V/Pa", above=0, default=None
+    )
+    air_density: float | None = parameter(
+        "density of the air; by default that of `drop.air`, or that at 20 C",
+        "kg/m^3",
+        above=0,
+        default=None,
+    )
+    speed_of_sound: float = parameter(
+        "speed of sound in the air; by default that at 20 C",
+        "m/s",
+        above=0,
+        default=SPEED_OF_SOUND,
+    )
+
+    def instrument(self) -> Instrument:
+        """Return the microphone, in air at 20 C unless another density is given."""
+        return Microphone(self.sensitivity, self.air_density or AIR_DENSITY)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from vibroimpact.dynamics.sensors.instruments.instrument import InstrumentInCase
 from vibroimpact.dynamics.sensors.pole_pairs import Section
 
 
 @dataclass(frozen=True)
-class Proportional:
+class Proportional(InstrumentInCase):
     """Instrument without poles, of what grows with the curvature of the plate.
 
     It puts out voltage if it has a sensitivity.

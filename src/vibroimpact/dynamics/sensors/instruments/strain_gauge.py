@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from vibroimpact.contact.parameters import parameter
 from vibroimpact.dynamics.sensors.instruments.instrument import Direction, Quantity
 from vibroimpact.dynamics.sensors.instruments.proportional import Proportional
 
 
 @dataclass(frozen=True)
 class StrainGauge(Proportional):
-    """A strain gauge, short compared with the bending waves, without mass and stiffness.
+    """A strain gauge on a face of the plate, along a direction in it.
+
+    It is short compared with the bending waves, and has neither mass nor stiffness.
 
     Parameters
     ----------
@@ -22,6 +25,16 @@ class StrainGauge(Proportional):
     >>> StrainGauge().quantity, StrainGauge().components((0.0, 1.0, 0.0))
     ('strain', (0.0, 1.0, 0.0))
     """
+
+    name = "strain-gauge"
+    noun = "a strain gauge"
+    properties = "sensitivity of a strain gauge"
+    measures = "strain"
+    subject = "strain"
+
+    sensitivity: float | None = parameter(
+        "voltage over strain; its output is then a voltage", "V", above=0, default=None
+    )
 
     @property
     def quantity(self) -> Quantity:

@@ -9,8 +9,8 @@ from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import with_path
 from vibroimpact.measurements.header_cells import name_and_unit
 from vibroimpact.quoting import quoted
+from vibroimpact.signals.reading.record_files import load_records
 from vibroimpact.signals.record import Record
-from vibroimpact.signals.record_files import load_records
 
 _MOST_LISTED = 10
 """Largest number of channels that a message names."""
