@@ -87,7 +87,7 @@ class WithReport:
         known = choices([*charts, *further], str(name))
         raise InputError(f"there is no chart {quoted(name)}; there are {known}")
 
-    def _repr_html_(self) -> str:
+    def _repr_html_(self) -> str | None:
         from vibroimpact.report.html_report import html_report
 
         return html_report(self.report)
