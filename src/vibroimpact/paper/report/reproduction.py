@@ -36,6 +36,16 @@ class Reproduction(WithReport, reported_in="vibroimpact.paper.report.report"):
         The folder.
     parts : dict of str to RenderedPart
         The parts by name, in the order of the report.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> with TemporaryDirectory() as folder:
+    ...     place = vi.reproduce_paper(f"{folder}/paper", only=["section3.1"])
+    ...     reproduction = vi.load_reproduction(place)
+    >>> list(reproduction.parts), [table.columns[-1].heading for table in reproduction.tables]
+    (['section3.1'], ['Not reproduced', 'Not reproduced', 'Verdict'])
     """
 
     path: Path
