@@ -69,7 +69,7 @@ def measure(name: str) -> None:
     told = describe_costs(case)
     begun = time.process_time()
     with tempfile.TemporaryDirectory() as folder:
-        vi.save_result(vi.simulate(case), Path(folder, "result"))
+        vi.simulate(case).save(Path(folder, "result"))
         size = sum(file.stat().st_size for file in Path(folder).rglob("*") if file.is_file()) / 1e6
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
     print(

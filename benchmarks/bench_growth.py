@@ -92,7 +92,7 @@ def impacts(number: int, folder: Path) -> None:
         "contact": {"law": "hunt-crossley", "restitution": 0.999},
         "run": {"impacts": number, "rest_speed": 1e-9},
     }
-    vi.save_result(vi.simulate(vi.case_of(case)), folder / "drop")
+    vi.simulate(vi.case_of(case)).save(folder / "drop")
 
 
 def modes(number: int, folder: Path) -> None:

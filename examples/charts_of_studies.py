@@ -10,7 +10,6 @@ from tempfile import TemporaryDirectory
 
 import vibroimpact as vi
 from vibroimpact.charts.files import save_charts
-from vibroimpact.studies.report.charts import study_charts
 
 CASE = {
     "sphere": {"radius": "25 mm", "material": "granite"},
@@ -48,6 +47,6 @@ for name, sweep in STUDIES.items():
                 vi.studies.sweep_of({**CASE, "sweep": sweep}), Path(folder, "study")
             )
         )
-        (chart,) = (chart for chart in study_charts(study) if chart.name == DRAWN[name])
+        chart = study.charts[DRAWN[name]]
     (file,) = save_charts([replace(chart, name=name)], Path())
     print(f"{file}: {chart.title}")

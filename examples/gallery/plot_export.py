@@ -31,7 +31,7 @@ response = vi.simulate(vi.case_of(case))
 texts = {}
 with TemporaryDirectory() as folder:
     result = Path(folder, "drop")
-    vi.save_result(response, result)
+    response.save(result)
     for program in ("adams", "lammps", "yade", "mujoco", "exudyn"):
         for file in vi.exporting.export_result(result, program):
             texts[file.name] = file.read_text()

@@ -60,6 +60,5 @@ assert np.allclose(modes["plate"].basis.frequencies[:2], [171.3, 268.8], rtol=5e
 # The first twelve mode shapes
 # ----------------------------
 # The chart of the report, drawn by matplotlib into a given figure.
-(chart,) = vi.mode_charts(modes)
-vi.charts.matplotlib_figure(chart, plt.figure())
+vi.charts.matplotlib_figure(modes.charts["plate_modes"], plt.figure())
 plt.show()

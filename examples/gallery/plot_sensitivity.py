@@ -43,14 +43,10 @@ case = {
     "sweep": {"design": "saltelli", "samples": 1024, "over": over},
 }
 with TemporaryDirectory() as folder:
-    charts = {
-        chart.name: chart
-        for chart in vi.studies.study_charts(
-            vi.studies.load_study(
-                vi.studies.run_sweep(vi.studies.sweep_of(case), Path(folder, "tolerances"))
-            )
-        )
-    }
+    study = vi.studies.load_study(
+        vi.studies.run_sweep(vi.studies.sweep_of(case), Path(folder, "tolerances"))
+    )
+    charts = study.charts
 
 # %%
 # Total indices of the largest force

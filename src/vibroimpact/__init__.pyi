@@ -22,6 +22,7 @@ from .bodies.rigid_bodies import rigid_sphere as rigid_sphere
 from .cases.case import Case as Case
 from .cases.case import case_schema as case_schema
 from .cases.elastic.modes import BodyModes as BodyModes
+from .cases.elastic.modes import Modes as Modes
 from .cases.elastic.modes import compute_modes as compute_modes
 from .cases.reader import case_of as case_of
 from .cases.reader import load_case as load_case
@@ -50,16 +51,12 @@ from .errors import VibroimpactError as VibroimpactError
 from .figures import save_figures as save_figures
 from .materials import Material as Material
 from .materials import find_material as find_material
-from .modes.charts import mode_charts as mode_charts
-from .modes.folder import save_modes as save_modes
 from .paper.report.folder import reproduce_paper as reproduce_paper
+from .paper.report.reproduction import Reproduction as Reproduction
+from .paper.report.reproduction import load_reproduction as load_reproduction
 from .regenerate import remake_report as remake_report
 from .results.folder import load_result as load_result
 from .results.result import Result as Result
 from .results.result import result_of as result_of
-from .runs.charts import run_charts as run_charts
-from .runs.notebook import plot_result as plot_result
-from .runs.notebook import result_html as result_html
-from .runs.save import save_result as save_result
 from .structures.mesh import Mesh as Mesh
 from .structures.modal_model import ModalBasis as ModalBasis

@@ -8,15 +8,15 @@ from functools import partial
 from os import PathLike
 from pathlib import Path
 
-from vibroimpact.charts.figures_folder import FIGURES
 from vibroimpact.charts.files import check_formats, save_charts
 from vibroimpact.errors import InputError
 from vibroimpact.files.new_folders import made_folder
 from vibroimpact.files.recover import recover
+from vibroimpact.files.result_folder import FIGURES
 from vibroimpact.report.page import replace_report_files
+from vibroimpact.report.save_report import write_figures
 from vibroimpact.results.folder import load_result
 from vibroimpact.results.result import Result
-from vibroimpact.runs.figures import write_figures
 
 
 def save_figures(
@@ -58,7 +58,7 @@ def save_figures(
     >>> import vibroimpact as vi
     >>> response = vi.simulate(vi.load_case("paper:type1-theory"))
     >>> with tempfile.TemporaryDirectory() as temporary:
-    ...     folder = vi.save_result(response, f"{temporary}/theory")
+    ...     folder = response.save(f"{temporary}/theory")
     ...     sorted(file.name for file in save_figures(folder, ["svg"]).iterdir())[:3]
     ['acceleration.svg', 'energy.svg', 'force.svg']
     """
@@ -92,16 +92,16 @@ def _writer_of(
     from vibroimpact.studies.study_folder import is_study
 
     if is_study(folder):
-        from vibroimpact.studies.report.charts import study_charts
         from vibroimpact.studies.study import load_study
 
-        charts = study_charts(load_study(folder))
+        charts = load_study(folder).report.charts
 
         def write(target: Path) -> None:
             save_charts(charts, target, formats, progress)
 
         return write
-    return partial(write_figures, _result_in(folder), formats=formats, progress=progress)
+    report = _result_in(folder).report
+    return partial(write_figures, report, formats=formats, progress=progress)
 
 
 def _result_in(folder: Path) -> Result:
@@ -112,7 +112,7 @@ def _result_in(folder: Path) -> Result:
     try:
         return load_result(folder)
     except InputError:
-        from vibroimpact.paper.report.folder import is_reproduction
+        from vibroimpact.paper.report.reproduction import is_reproduction
 
         if is_reproduction(folder):
             raise InputError(

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from vibroimpact.files.recover import recover
 from vibroimpact.report.page import replace_report_files
+from vibroimpact.report.save_report import write_page
 from vibroimpact.results.folder import load_result
-from vibroimpact.runs.page import write_report
 
 
 def remake_report(directory: str | PathLike[str]) -> Path:
@@ -29,25 +29,26 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     >>> import vibroimpact as vi
     >>> response = vi.simulate(vi.load_case("paper:type1-theory"))
     >>> with TemporaryDirectory() as temporary:
-    ...     folder = vi.save_result(response, f"{temporary}/theory")
+    ...     folder = response.save(f"{temporary}/theory")
     ...     vi.remake_report(folder).name
     'theory'
     """
     # imported here, since a run does not need them
-    from vibroimpact.studies.report.page import write_study_report
+    from vibroimpact.studies.report.write_report import write_study_report
     from vibroimpact.studies.study import load_study
     from vibroimpact.studies.study_folder import is_study
 
     folder = Path(directory)
     recover(folder)
     if is_study(folder):
-        write_study_report(load_study(folder), folder)
+        write_study_report(load_study(folder))
         return folder
-    from vibroimpact.paper.report.folder import is_reproduction, write_reproduction_report
+    from vibroimpact.paper.report.folder import write_reproduction_report
+    from vibroimpact.paper.report.reproduction import is_reproduction
 
     if is_reproduction(folder):
         write_reproduction_report(folder)
         return folder
-    result = load_result(directory)
-    replace_report_files(folder, partial(write_report, result))
+    report = load_result(directory).report
+    replace_report_files(folder, partial(write_page, report))
     return folder

@@ -11,8 +11,8 @@ from functools import cache
 import vibroimpact as vi
 from stated_numbers import ROOT, says
 from vibroimpact.paper.printed import printed
-from vibroimpact.paper.report.outline import PARTS, render_part
-from vibroimpact.paper.report.page import range_widths
+from vibroimpact.paper.report.counts import range_widths
+from vibroimpact.paper.report.outline import PARTS, RenderedPart, render_part
 from vibroimpact.paper.runs import Runs
 
 GUIDE = "docs/guides/reproduce-the-paper.md"
@@ -105,7 +105,11 @@ def test_ranges_of_table_2() -> None:
     rows = [
         row for row in render_part(PARTS["table2"], runs()).rows if row["verdict"] == "explained"
     ]
-    assert len(rows) == range_widths({"table2": {"rows": rows}})["table2"].number == 20
+    assert (
+        len(rows)
+        == range_widths({"table2": RenderedPart("", "", rows, None)})["table2"].number
+        == 20
+    )
     width = [row["range_high"] - row["range_low"] for row in rows]
     error = [float(row["printed"]) for row in rows]
     says(GUIDE, "with ranges {} to {} percentage points wide", min(width), max(width))

@@ -53,7 +53,7 @@ def test_a_rigid_drop_that_rebounds_as_an_elastic_one(tmp_path: Path) -> None:
     """Its law is calibrated to the impacts of the run with elastic bodies, as the page shows."""
     command = lammps()
     case = vi.load_case("paper:type3")
-    vi.save_result(vi.simulate(case), tmp_path / "elastic")
+    vi.simulate(case).save(tmp_path / "elastic")
     values = resolved_case(case)
     rigid = {
         "sphere": {name: values["sphere"][name] for name in ("radius", "material")},

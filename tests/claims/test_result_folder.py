@@ -26,12 +26,8 @@ PAGE = "docs/result-folder.md"
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return Path(
-        vi.save_result(
-            vi.simulate(vi.load_case("paper:type1-theory")),
-            tmp_path_factory.mktemp("made") / "theory",
-        )
-    )
+    response = vi.simulate(vi.load_case("paper:type1-theory"))
+    return response.save(tmp_path_factory.mktemp("made") / "theory")
 
 
 def test_limits_of_files() -> None:
@@ -70,10 +66,7 @@ def test_the_format_of_results(folder: Path) -> None:
 
 
 def test_figures_for_print(folder: Path, tmp_path: Path) -> None:
-    vi.charts.save_charts(
-        [next(chart for chart in vi.run_charts(vi.load_result(folder)) if chart.name == "force")],
-        tmp_path,
-    )
+    vi.charts.save_charts([vi.load_result(folder).charts["force"]], tmp_path)
     with Image.open(tmp_path / "force.png") as picture:
         dots = np.array(picture.info["dpi"])
         says(PAGE, "PNG files have {} dots per inch", dots[0])

@@ -26,7 +26,6 @@ from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_o
 from vibroimpact.exporting.load_drop import load_drop
 from vibroimpact.paper.report.folder import reproduce_paper
 from vibroimpact.studies.ledger import LEDGER
-from vibroimpact.studies.report.charts import study_charts
 
 
 class Change(NamedTuple):
@@ -77,10 +76,8 @@ def use_result(folder: Path) -> None:
 
 @FEW
 def test_results(few: int, tmp_path: Path) -> None:
-    vi.save_result(
-        vi.simulate(vi.case_of({**TABLE, "run": {"impacts": 1, "duration": "20 ms"}})),
-        tmp_path / "out",
-    )
+    case = vi.case_of({**TABLE, "run": {"impacts": 1, "duration": "20 ms"}})
+    vi.simulate(case).save(tmp_path / "out")
     no_failures(
         use_result,
         tmp_path / "out",
@@ -92,7 +89,7 @@ def test_results(few: int, tmp_path: Path) -> None:
 
 def use_study(folder: Path) -> None:
     study = vi.studies.load_study(folder)
-    study_charts(study)
+    assert study.report.answer
     for name in study.shapes:
         study.values(name)
 

@@ -24,13 +24,14 @@ from support import plain_case
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.exporting.load_drop import load_drop
-from vibroimpact.paper.report.folder import read_parts, reproduce_paper
+from vibroimpact.paper.report.folder import reproduce_paper
+from vibroimpact.paper.report.reproduction import load_reproduction
 from vibroimpact.results.deflection import Deflection
-from vibroimpact.results.folder import write_result
 from vibroimpact.results.result import Result, result_of
 from vibroimpact.structures.store import load_entry, save_entry
 from vibroimpact.studies.chunk_file import ChunkResult, chunk_path, read_chunk, write_chunk
 from vibroimpact.studies.ledger import Span, make_ledger, open_ledger
+from written_results import write_result
 
 
 @pytest.fixture(autouse=True)
@@ -234,7 +235,7 @@ def test_calibrations(calibration: Path) -> None:
 
 def test_parts_of_a_reproduction(tmp_path: Path) -> None:
     reproduce_paper(tmp_path / "out", ["table1"])
-    no_failures(read_parts, tmp_path / "out", ["parts/table1.json"], 10)
+    no_failures(load_reproduction, tmp_path / "out", ["parts/table1.json"], 10)
 
 
 def read_chunk_or_refuse(folder: Path) -> Any:

@@ -64,7 +64,7 @@ def computed(page: Page, folder: Path) -> Result:
 
 def assert_tables_are_those_of(page: Page, result: Result) -> None:
     found = impact_table(result)
-    assert tables(page, "impacts") == [*found.head, *found.tail]
+    assert tables(page, "impacts") == found.rows
     assert tables(page, "ledger") == [
         [one.title, one.energy, one.part] for one in ledger_table(result)[1]
     ]
@@ -550,9 +550,9 @@ def test_hold_shows_the_case_of_before_beside_the_new_one(
     look = page.evaluate("() => vibroimpact.live.charts.get('position').element.data[0].line")
     assert look["dash"] == "4px,3px"
     lines = tables(page, "impacts")
-    kept = impact_table(held).head
+    kept = impact_table(held).rows
     assert lines == [
-        *impact_table(result).head,
+        *impact_table(result).rows,
         *([f"held {cells[0]}", *cells[1:]] for cells in kept),
     ]
     assert [cells[3] for cells in tables(page, "ledger")] == [
@@ -593,10 +593,10 @@ def test_what_is_held_is_aligned_at_first_touch_in_a_view(
             line.y[inside], expected[inside], rtol=0, atol=1e-3 * np.abs(line.y[inside]).max()
         )
     table, kept = impact_table(result), impact_table(held)
-    place = [name for name, _ in kept.headers].index("Largest force")
-    (now, before), cell = (one.headers[place][1] for one in (table, kept)), kept.head[0][place]
+    place = [name for name, _ in kept.headings].index("Largest force")
+    (now, before), cell = (one.headings[place][1] for one in (table, kept)), kept.rows[0][place]
     assert now != before
-    assert tables(page, "impacts")[len(table.head)][place] == f"{cell} {before}"
+    assert tables(page, "impacts")[len(table.rows)][place] == f"{cell} {before}"
     units = [ledger_table(one)[0] for one in (result, held)]
     assert units[0] != units[1]
     assert [cells[3] for cells in tables(page, "ledger")] == [

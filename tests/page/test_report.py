@@ -39,8 +39,8 @@ from plotted import (
     zoom,
 )
 from vibroimpact.charts.palette import DIVERGING, DIVERGING_ON_DARK
+from vibroimpact.report.page_of_report import page_of_report
 from vibroimpact.results.result import Result, result_of
-from vibroimpact.runs.page import run_page
 from vibroimpact.runs.spectrum import amplitude_spectrum, first_response
 from vibroimpact.runs.tables import impact_table, ledger_table
 
@@ -121,7 +121,7 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Re
                 )
             )
             path = folder / f"{name}.html"
-            path.write_text(run_page(result), encoding="utf-8")
+            path.write_text(page_of_report(result.report), encoding="utf-8")
             made[name] = result, path
         return made[name]
 
@@ -287,7 +287,7 @@ def test_buttons_of_the_table_show_the_impact(page: Page, report: Any) -> None:
     rows = page.locator("table.impacts tbody tr")
     assert [
         [cell.strip() for cell in row.locator("td").all_text_contents()] for row in rows.all()
-    ] == table.head
+    ] == table.rows
     page.get_by_role("button", name="Show impact 3 in the charts").click()
     assert page.locator("#view").input_value() == "2"
     assert page.locator("tr.chosen td").first.text_content().strip() == "3"
@@ -643,8 +643,8 @@ def test_on_paper_everything_is_there(new_page: MakePage, report: Any) -> None:
     page.evaluate("() => dispatchEvent(new Event('beforeprint'))")
     assert page.locator("html").get_attribute("data-theme") == "light"
     assert page.locator("details:not([open])").count() == 0
-    assert page.locator("[data-impact] td:first-child").first.is_visible()
-    assert page.locator("[data-impact] button").first.is_visible()
+    assert page.locator("[data-view] td:first-child").first.is_visible()
+    assert page.locator("[data-view] button").first.is_visible()
     assert page.locator("#theme, .tools, .player").filter(visible=True).count() == 0
     widths = page.evaluate(
         "() => [...vibroimpact.charts].map(([name, one]) => [name, one.element._fullLayout.width])"

@@ -339,11 +339,11 @@ def test_reasons_name_what_exists() -> None:
 def test_readme_shows_what_the_demo_prints(variable: vi.Response) -> None:
     from rich.console import Console
 
+    from vibroimpact.report.terminal_report import terminal_report
     from vibroimpact.results.result import result_of
-    from vibroimpact.runs.text import result_summary
 
     written = StringIO()
-    Console(width=80, file=written).print(result_summary(result_of(variable), 80))
+    Console(width=80, file=written).print(terminal_report(result_of(variable).report))
     printed = [line.rstrip() for line in written.getvalue().splitlines()]
     (shown,) = blocks(ROOT / "README.md", "text")
     for line in shown.splitlines():

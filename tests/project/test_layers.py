@@ -21,19 +21,20 @@ LAYERS = [
     {"compiled"},
     {"units"},
     {"materials"},
+    # how anything is shown
+    {"charts"},
+    {"report"},
     # the physics
     {"contact"},
     {"structures"},
     {"bodies"},
     {"dynamics"},
     {"friction", "sensors"},
-    # what comes in, what came out, and how it is shown
+    # what comes in, and what came out
     {"meshes", "measurements"},
     {"cases"},
     {"results"},
     {"signals"},
-    {"charts"},
-    {"report"},
     # what people do, each whole
     {"modes"},
     {"runs"},
@@ -48,12 +49,6 @@ LAYERS = [
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 
-# response.save(...), .plot(...) and what a notebook shows ask the package's front, which knows the
-# writers and charts: the doors upwards
-DOORS = {
-    (file, "vibroimpact")
-    for file in ("dynamics/response.py", "results/result.py", "studies/study.py")
-}
 
 # rooms whose folders import each other; in all others they do not
 ENTWINED = {"calibration", "cases", "dynamics", "structures", "studies"}
@@ -101,27 +96,20 @@ def test_every_room_has_a_layer() -> None:
 def test_imports_point_down() -> None:
     modules = sorted(PACKAGE.rglob("*.py"))
     assert len(modules) > 40
-    doors = set()
     for path in modules:
         relative = path.relative_to(PACKAGE).as_posix()
         here = room(f"vibroimpact.{relative.removesuffix('.py').replace('/', '.')}")
         for name in imports_of(path):
-            if (relative, name) in DOORS:
-                doors.add((relative, name))
-                continue
             if here == "cases" and name in SECTIONS:
                 continue
             there = room(name)
             assert LEVEL[there] < LEVEL[here] or there == here, (
                 f"{relative} imports {name}, which lies above it"
             )
-    assert doors == DOORS, "a door that is no longer used"
 
 
 def test_modules_do_not_import_in_circles() -> None:
-    """Within rooms neither, and not for types alone; the package's front, which `DOORS`
-    lead to, is above all of them.
-    """
+    """Within rooms neither, and not for types alone; the package's front is above all of them."""
     paths = {
         f"vibroimpact.{path.relative_to(PACKAGE).with_suffix('').as_posix().replace('/', '.')}": path
         for path in PACKAGE.rglob("*.py")

@@ -134,7 +134,7 @@ def folder(tmp_path: Path, tiny_models: Path) -> Path:
         header="time [s],hammer [N],a1 [g],a2 [g]",
         comments="",
     )
-    vi.save_result(vi.simulate(vi.case_of(TABLE)), work / "run")
+    vi.simulate(vi.case_of(TABLE)).save(work / "run")
     return work
 
 

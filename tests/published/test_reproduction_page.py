@@ -22,11 +22,13 @@ from vibroimpact.paper.printed import PrintedValue, printed, printed_values
 from vibroimpact.paper.report.compared_quantity import ComparedQuantity
 from vibroimpact.paper.report.docs_page import docs_page_text
 from vibroimpact.paper.report.elastic_charts import PLATE_QUANTITIES, SPHERE_ENERGY, SPHERE_MOTION
+from vibroimpact.paper.report.markdown_report import markdown_report
 from vibroimpact.paper.report.outline import CHAPTERS, PARTS, RenderedPart, render_part
-from vibroimpact.paper.report.page import report_html, report_text
+from vibroimpact.paper.report.reproduction import Reproduction
 from vibroimpact.paper.report_section import Kind, Verdict
 from vibroimpact.paper.runs import TREATMENTS, Runs
 from vibroimpact.paper.step_sweep import COMPARED, paper_impact, superposed, sweep_steps
+from vibroimpact.report.page_of_report import page_of_report
 
 PAGE = Path(__file__).parents[2] / "docs" / "reproduction.md"
 
@@ -76,8 +78,7 @@ def rows(parts: dict[str, RenderedPart]) -> list[dict]:
 
 def texts(parts: dict[str, RenderedPart]) -> tuple[str, str]:
     """The page as it is, and as these parts make it."""
-    made = report_text({name: made._asdict() for name, made in parts.items()})
-    return PAGE.read_text(encoding="utf-8"), docs_page_text(made)
+    return PAGE.read_text(encoding="utf-8"), docs_page_text(markdown_report(parts))
 
 
 def check_numbers(before: str, now: str) -> None:
@@ -153,7 +154,7 @@ def test_the_page_is_small(parts: dict[str, RenderedPart]) -> None:
     charts = [plotly_chart(made.chart) for made in parts.values() if made.chart is not None]
     for chart in charts:
         assert 5_000 < len(pack(chart)) < 300_000, chart["name"]
-    page = report_html(report_text({name: made._asdict() for name, made in parts.items()}), charts)
+    page = page_of_report(Reproduction(Path(), parts).report)
     assert len(page) < 5_000_000
     assert "<img" not in page
     assert all(f'<figure id="{chart["name"]}"' in page for chart in charts)

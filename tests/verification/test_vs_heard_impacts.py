@@ -49,7 +49,7 @@ def test_restitutions_of_a_simulated_record(
         )
     )
     response = vi.simulate(case)
-    folder = vi.save_result(response, tmp_path / "drop")
+    folder = response.save(tmp_path / "drop")
     (file,) = vi.exporting.export_result(folder, "wav", tmp_path / "sound")
     record = vi.signals.one_record(file)
     assert (record.rate, record.unit) == (RATE, "m/s2")

@@ -109,7 +109,8 @@ def test_a_chaotic_drop_prints_no_digits_that_it_lacks() -> None:
     table = {column.heading: column.cells[0] for column in first_impacts(comparison).columns}
     assert re.fullmatch(r"\d\.\d{5}", table["Restitution achieved, first"])
     assert table["achieved, last"] == "?"
-    headers, rows, *_ = impact_table(first)
+    table = impact_table(first)
+    headers, rows = table.headings, table.rows
     assert rows[-1][headers.index(("Largest force", "kN"))] == "?"
     assert "? mJ (? %) remains in the motion of the plate" in caption("energy", first).replace(
         "\u00a0", " "

@@ -28,8 +28,8 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.cli import main
 from vibroimpact.exporting.export_format import find_export_format
 from vibroimpact.exporting.load_drop import drop_of_result
-from vibroimpact.results.folder import write_result
 from vibroimpact.results.result import result_of
+from written_results import write_result
 
 AGAINST = Against(
     "strict parser of Adams files and SciPy's DOP853, same case with rigid bodies",

@@ -21,8 +21,9 @@ from vibroimpact.errors import ComputationError, InputError, choices
 from vibroimpact.files.hdf5 import short_reason
 from vibroimpact.files.plain_names import identifier, plain_names
 from vibroimpact.quoting import quoted
+from vibroimpact.report.page_of_report import page_of_report
 from vibroimpact.results.csv_files import signal_csv
-from vibroimpact.runs.page import run_page
+from vibroimpact.runs.report import report_of
 
 Send = Callable[[bytes], Awaitable[None]]
 """Function that brings a message to the window."""
@@ -247,7 +248,11 @@ def _files(kind: str, state: State | None) -> dict[str, Any]:
     result = state.result
     if kind == "report":
         stem = identifier(result.name, "A-Za-z0-9", "drop", "-")
-        report = {"name": f"{stem}.html", "kind": "text/html", "text": run_page(result)}
+        report = {
+            "name": f"{stem}.html",
+            "kind": "text/html",
+            "text": page_of_report(report_of(result)),
+        }
         return {"files": [report]}
     if not result.signals:
         raise InputError("there are no signals: the case has no sensors", "sensors")

@@ -107,9 +107,9 @@ def _document(
 def _impacts(result: Result) -> dict[str, Any]:
     table = impact_table(result)
     return {
-        "headers": table.headers,
-        "rows": [*table.head, *table.tail],
-        "left_out": table.left_out,
+        "headers": table.headings,
+        "rows": table.rows,
+        "left_out": 0 if table.gap is None else table.gap.left_out,
     }
 
 

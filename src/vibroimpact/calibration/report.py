@@ -39,9 +39,9 @@ from vibroimpact.calibration.law_report import (
 )
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, sealed
+from vibroimpact.files.result_folder import CASE, write_case
 from vibroimpact.report.report import Block, Code, Explanation, Note, Report, Section
 from vibroimpact.results.csv_files import write_csv
-from vibroimpact.results.folder import CASE, write_case
 
 
 def report_of(calibration: Calibration | FrictionCalibration) -> Report:

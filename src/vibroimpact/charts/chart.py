@@ -8,7 +8,7 @@ charts has a *role*, whose colour, dashes and symbol stand in `vibroimpact.chart
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -78,6 +78,37 @@ class Chart:
     def views(self) -> tuple[View, ...]:
         """The parts shown enlarged of the first axis that has some."""
         return next((panel.x.views for panel in self.panels if panel.x.views), ())
+
+
+@dataclass(frozen=True, eq=False)
+class StoredChart(Chart):
+    """A chart that was stored as it was drawn for a page, without its panels.
+
+    Parameters
+    ----------
+    drawn : dict
+        The chart as `plotly_chart` returned it.
+    """
+
+    drawn: dict[str, Any] = field(default_factory=dict)
+
+
+def stored_chart(drawn: dict[str, Any]) -> StoredChart:
+    """Return the chart that was drawn for a page and stored.
+
+    Parameters
+    ----------
+    drawn : dict
+        The chart as `plotly_chart` returned it.
+    """
+    return StoredChart(
+        drawn["name"],
+        drawn["title"],
+        rows=(),
+        caption=drawn["caption"],
+        subtitle=drawn["subtitle"],
+        drawn=drawn,
+    )
 
 
 def values_on(axis: Axis, panels: tuple[Panel, ...]) -> Floats:

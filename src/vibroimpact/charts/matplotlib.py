@@ -15,7 +15,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from vibroimpact.charts.axis import Axis, View
-from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.chart import Chart, Panel, StoredChart
 from vibroimpact.charts.frame import (
     Frame,
     ends_on,
@@ -33,6 +33,7 @@ from vibroimpact.charts.marks import (
 from vibroimpact.charts.print_axes import plain_log, set_axis
 from vibroimpact.charts.print_marks import PrintedMarks
 from vibroimpact.charts.print_style import lettering, print_style
+from vibroimpact.errors import InputError
 
 WIDTH = 8.0
 """Width of every figure [in]."""
@@ -108,6 +109,11 @@ def matplotlib_figure(chart: Chart, figure: Figure | None = None) -> Figure:
     matplotlib.figure.Figure
         The figure.
 
+    Raises
+    ------
+    InputError
+        If the chart was stored without its panels.
+
     Examples
     --------
     >>> from vibroimpact.charts.marks import Line
@@ -117,6 +123,8 @@ def matplotlib_figure(chart: Chart, figure: Figure | None = None) -> Figure:
     >>> figure.axes[0].get_ylabel(), figure.axes[0].lines[0].get_ydata().tolist()
     ('Force [kN]', [0.005, 7.0])
     """
+    if isinstance(chart, StoredChart):
+        raise InputError(f"the chart {chart.name} was stored as drawn for a page alone")
     with print_style():
         return _Print(chart).figure(Figure() if figure is None else figure)
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.charts.axis import Axis, View
-from vibroimpact.charts.chart import Chart, Panel, values_on
+from vibroimpact.charts.chart import Chart, Panel, StoredChart, values_on
 from vibroimpact.charts.contours import contours_of
 from vibroimpact.charts.frame import (
     Frame,
@@ -113,6 +113,8 @@ def plotly_chart(chart: Chart) -> dict[str, Any]:
     >>> figure["data"][0]["type"], figure["frames"]["y"]["title"]
     ('scatter', 'Force [kN]')
     """
+    if isinstance(chart, StoredChart):
+        return chart.drawn
     return _Drawing(chart).figure()
 
 

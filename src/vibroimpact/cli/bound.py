@@ -62,7 +62,7 @@ def bound(
     """
     from vibroimpact.bayes_error.bound import bound_of
     from vibroimpact.bayes_error.observations import Channel
-    from vibroimpact.results.folder import check_free
+    from vibroimpact.files.result_folder import check_free
     from vibroimpact.studies.study import load_study
     from vibroimpact.studies.sweep_file import load_sweep
 

@@ -95,7 +95,7 @@ def calibrate(
     a record of sound or vibration, restitution and speed of each impact follow from the times
     between bounces; a table has them: speed [m/s], restitution and, for means, count.
     """
-    from vibroimpact.results.folder import check_free
+    from vibroimpact.files.result_folder import check_free
 
     target = Path(f"{stem(case)}-calibrated") if output is None else output
     options_of_records = {
@@ -141,7 +141,7 @@ def _calibrated_case(
     """Return the calibration of a case."""
     from vibroimpact.calibration.calibrate_case import calibrate_case, load_calibration
     from vibroimpact.cases.reader import prefix_errors
-    from vibroimpact.results.folder import check_free
+    from vibroimpact.files.result_folder import check_free
 
     problem = load_calibration(case, settings_of(changes))
     check_free(target, force=force)

@@ -69,8 +69,8 @@ def compare(
     liquid stay under each law.
     """
     from vibroimpact.cases.reader import load_case
+    from vibroimpact.files.result_folder import check_free
     from vibroimpact.law_comparison.comparison import compare_laws
-    from vibroimpact.results.folder import check_free
 
     compared_case = load_case(case)
     target = Path(f"{stem(case)}-compared") if output is None else output

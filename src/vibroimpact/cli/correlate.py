@@ -105,7 +105,7 @@ def correlate(
     the case, and so are the modes that are fitted to them.
     """
     from vibroimpact.cases.reader import load_case
-    from vibroimpact.results.folder import check_free
+    from vibroimpact.files.result_folder import check_free
     from vibroimpact.signals.reading.record_files import load_records
     from vibroimpact.test_analysis.compared_kind import compared_kind
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -22,14 +22,11 @@ from vibroimpact.cli.shared import (
     say,
     settings_of,
     show,
+    show_folder,
     stem,
+    write_and_show,
 )
 from vibroimpact.errors import InputError
-
-if TYPE_CHECKING:
-    from rich.console import Console
-
-    from vibroimpact.results.result import Result
 
 
 @app.command()
@@ -129,12 +126,12 @@ def _run(
     from vibroimpact.cases.costs import describe_costs
     from vibroimpact.cases.reader import load_case, prefix_errors
     from vibroimpact.dynamics.simulate import simulate
+    from vibroimpact.files.result_folder import check_free, new_folder
     from vibroimpact.report.progress import patient_progress
-    from vibroimpact.results.folder import check_free, new_folder
-    from vibroimpact.results.summary import summary_of
-    from vibroimpact.runs.page import write_report
-    from vibroimpact.runs.save import write_data
-    from vibroimpact.runs.text import result_summary
+    from vibroimpact.report.save_report import fill_folder
+    from vibroimpact.report.terminal_report import terminal_report
+    from vibroimpact.results.result import result_of
+    from vibroimpact.runs.paraview import PARAVIEW, write_paraview
     from vibroimpact.studies.sweep_file import load_drop
 
     case = load_case(name, changes) if drop is None else load_drop(name, drop, changes)
@@ -158,31 +155,20 @@ def _run(
         with patient_progress("simulating", screen) as progress:
             response = simulate(problem, progress)
         with new_folder(target, force=force) as folder:
-            result = write_data(response, folder)
+            result = result_of(response)
+            write_paraview(response, folder / PARAVIEW)
             # of a long run it may take as much memory as the result: release it before charts are
             # made
             del response
-            write_report(result, folder)
-            if figures:
-                _draw(result, folder, screen)
-    show(
-        lambda: {"folder": str(target), **summary_of(result)},
-        lambda: result_summary(result, screen.width),
+            with patient_progress("drawing figures", screen) as progress:
+                fill_folder(result.report, folder, ("png",) if figures else (), progress)
+    show_folder(
+        target,
+        lambda: result.document,
+        lambda: terminal_report(result.report),
         as_json=as_json,
+        beside="figures" if figures else "",
     )
-    say(
-        f"wrote {target / 'report.html'}" + (", and figures beside it" if figures else ""),
-        err=as_json,
-    )
-
-
-def _draw(result: Result, folder: Path, screen: Console) -> None:
-    from vibroimpact.report.progress import patient_progress
-    from vibroimpact.runs.figures import FIGURES, write_figures
-
-    (folder / FIGURES).mkdir()
-    with patient_progress("drawing figures", screen) as progress:
-        write_figures(result, folder / FIGURES, progress=progress)
 
 
 @app.command()
@@ -218,12 +204,10 @@ def modes(
     from vibroimpact.cases.elastic.modes import compute_modes
     from vibroimpact.cases.reader import load_case, prefix_errors
     from vibroimpact.cli.measured_modes import measured_modes, modes_beside_table
+    from vibroimpact.files.result_folder import check_free
     from vibroimpact.measurements.universal_file import is_universal
-    from vibroimpact.modes.document import modes_document
-    from vibroimpact.modes.folder import save_modes
-    from vibroimpact.modes.text import measured_summary, modes_summary
+    from vibroimpact.modes.report import report_of
     from vibroimpact.report.progress import patient_progress
-    from vibroimpact.results.folder import check_free
 
     target = Path(f"{stem(case)}-modes") if output is None else output
     if Path(case).is_file() and is_universal(case):
@@ -243,21 +227,15 @@ def modes(
         with patient_progress("computing modes", screen) as progress:
             bodies = prefix_errors(case, lambda: compute_modes(found, progress, note))
         beside = modes_beside_table(bodies, measured) if measured else None
-        folder = save_modes(
-            found, bodies, target, force=force, figures=("png",) if figures else (), measured=beside
-        )
-    document = modes_document(found, bodies) | (
-        {} if beside is None else {"measured": list(beside.rows), "doubts": list(beside.doubts)}
+        report = report_of(bodies, beside)
+    write_and_show(
+        report,
+        target,
+        force=force,
+        figures=figures,
+        as_json=as_json,
+        beside=("modes.csv and meshes" if beside is None else "modes.csv, measured.csv and meshes"),
     )
-    tables = [
-        lambda: modes_summary(found, bodies),
-        *([] if beside is None else [lambda: measured_summary(beside)]),
-    ]
-    show(lambda: {"folder": str(folder), **document}, *tables, as_json=as_json)
-    tables_written = (
-        "modes.csv and meshes" if beside is None else "modes.csv, measured.csv and meshes"
-    )
-    say(f"wrote {folder / 'report.html'}, and {tables_written} beside it", err=as_json)
 
 
 @app.command()

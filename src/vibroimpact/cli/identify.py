@@ -119,9 +119,9 @@ def identify(
     deviations.
     """
     from vibroimpact.cases.reader import load_case
+    from vibroimpact.files.result_folder import check_free
     from vibroimpact.identification.identify import identify as identify_impact
     from vibroimpact.identification.setup import SetupErrors
-    from vibroimpact.results.folder import check_free
     from vibroimpact.signals.reading.record_files import load_records
 
     plate_case = load_case(case, settings_of(changes))

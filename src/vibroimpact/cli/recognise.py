@@ -90,9 +90,9 @@ def recognise(
     Baselines and four classifiers are compared in a grouped and in a random split; the best one is
     saved, and --model applies it.
     """
+    from vibroimpact.files.result_folder import check_free
     from vibroimpact.recognition.apply import apply_recogniser
     from vibroimpact.recognition.recognise import recognise as recognise_signals
-    from vibroimpact.results.folder import check_free
 
     folder = Path(dataset).parent if dataset.endswith(".nc") else Path(dataset)
     name = stem(str(folder))

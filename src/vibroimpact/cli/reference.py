@@ -207,7 +207,7 @@ def doctor(
 ) -> None:
     """Show versions and what is kept on disk, and test this program."""
     from vibroimpact.cli.doctor import diagnose, diagnosis_rows, first_rebound_error
-    from vibroimpact.runs.text import versions_table
+    from vibroimpact.report.terminal_table import facts
 
     if clear_store:
         _clear_stores(as_json=as_json)
@@ -215,7 +215,7 @@ def doctor(
     diagnosis = diagnose()
     show(
         lambda: {**diagnosis, "first_rebound_error": first_rebound_error()},
-        lambda: versions_table(diagnosis_rows(diagnosis)),
+        lambda: facts(diagnosis_rows(diagnosis)),
         as_json=as_json,
     )
     error = first_rebound_error()

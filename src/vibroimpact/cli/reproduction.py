@@ -43,20 +43,10 @@ def reproduce(
     section5.1, fig10 to fig13, section5.2, fig14 to fig17, section5.3, fig18 to fig23, conclusions,
     recovery, sampling, unresolved, corrections.
     """
-    from vibroimpact._version import __version__
-    from vibroimpact.paper.report.folder import (
-        missing_parts,
-        read_parts,
-        reproduce_paper,
-        reproduced_values,
-    )
-    from vibroimpact.paper.report.page import (
-        kind_counts,
-        kind_summary,
-        verdict_counts,
-        verdict_table,
-    )
+    from vibroimpact.paper.report.folder import missing_parts, reproduce_paper
+    from vibroimpact.paper.report.reproduction import load_reproduction
     from vibroimpact.report.progress import patient_progress
+    from vibroimpact.report.terminal_report import terminal_report
 
     names = None if only is None else names_in(only)
     screen = console(err=as_json)
@@ -73,16 +63,5 @@ def reproduce(
             f"-o {shlex.quote(str(output))}{some}",
             130,
         )
-    parts = read_parts(folder)
-    show_folder(
-        folder,
-        lambda: {
-            "version": __version__,
-            "verdicts": verdict_counts(parts),
-            "kinds": kind_counts(parts),
-            "values": reproduced_values(parts),
-        },
-        lambda: verdict_table(parts),
-        lambda: kind_summary(parts),
-        as_json=as_json,
-    )
+    report = load_reproduction(folder).report
+    show_folder(folder, lambda: report.document, lambda: terminal_report(report), as_json=as_json)

@@ -22,6 +22,7 @@ from vibroimpact.quoting import visible
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
 
+    from vibroimpact.report.report import Report
     from vibroimpact.report.reported import Reported
     from vibroimpact.units.written import Written
 
@@ -180,12 +181,17 @@ def show_folder(
     document: Callable[[], Mapping[str, Any]],
     *tables: Callable[[], RenderableType],
     as_json: bool,
+    beside: str = "",
 ) -> None:
-    """Print what a folder with a report holds, as `show` does, and that it was written."""
-    from vibroimpact.results.folder import REPORT
+    """Print what a folder with a report holds, as `show` does, and that it was written.
+
+    `beside` names what else was written.
+    """
+    from vibroimpact.files.result_folder import REPORT
 
     show(lambda: {"folder": str(folder), **document()}, *tables, as_json=as_json)
-    say(f"wrote {folder / REPORT}", err=as_json)
+    also = f", and {beside} beside it" if beside else ""
+    say(f"wrote {folder / REPORT}{also}", err=as_json)
 
 
 def save_and_show(
@@ -206,12 +212,36 @@ def save_and_show(
     as_json : bool
         Whether the data are printed, and nothing else on standard output.
     """
+    with exit_on_interrupt():
+        report = finding.report
+    write_and_show(report, target, force=force, figures=figures, as_json=as_json)
+
+
+def write_and_show(
+    report: Report,
+    target: Path,
+    *,
+    force: bool,
+    figures: bool = False,
+    as_json: bool,
+    beside: str = "",
+) -> None:
+    """Write the folder of a report, and print it; or its data as JSON.
+
+    `save_and_show` and `show_folder` have the other parameters.
+    """
+    from vibroimpact.report.save_report import save_report
     from vibroimpact.report.terminal_report import terminal_report
 
     with exit_on_interrupt():
-        report = finding.report
-        folder = finding.save(target, force=force, figures=("png",) if figures else ())
-    show_folder(folder, lambda: report.document, lambda: terminal_report(report), as_json=as_json)
+        folder = save_report(report, target, force=force, figures=("png",) if figures else ())
+    show_folder(
+        folder,
+        lambda: report.document,
+        lambda: terminal_report(report),
+        as_json=as_json,
+        beside=beside,
+    )
 
 
 @contextmanager

@@ -216,9 +216,9 @@ def _run_sweep(
         At the next safe point, once `stopped` returns True.
     """
     from vibroimpact.report.progress import counting_progress, patient_progress
-    from vibroimpact.studies.report.document import study_document
-    from vibroimpact.studies.report.text import study_summary
-    from vibroimpact.studies.run_sweep import run_sweep
+    from vibroimpact.report.terminal_report import terminal_report
+    from vibroimpact.studies.compute_study import compute_study
+    from vibroimpact.studies.report.write_report import write_study_report
     from vibroimpact.studies.study import load_study
     from vibroimpact.studies.study_folder import has_study
     from vibroimpact.studies.sweep_file import load_sweep
@@ -251,7 +251,7 @@ def _run_sweep(
             raise_if_stopped()
 
         raise_if_stopped()
-        folder = run_sweep(
+        folder = compute_study(
             found,
             target,
             resume=resume,
@@ -263,13 +263,15 @@ def _run_sweep(
             modes_progress=modes_progress,
             tell=note,
         )
-    done = load_study(folder)
+        progress(found.size, found.size)
+        completed = load_study(folder)
+        write_study_report(completed)
     show(
-        lambda: {"folder": str(folder), **study_document(done)},
-        lambda: study_summary(done, screen.width),
+        lambda: {"folder": str(folder), **completed.document},
+        lambda: terminal_report(completed.report),
         as_json=as_json,
     )
-    written = ["study.nc", *(["card.md"] if done.labels else []), "report.html"]
+    written = ["study.nc", *(["card.md"] if completed.labels else []), "report.html"]
     say(
         f"wrote {', '.join(str(folder / name) for name in written[:-1])} and "
         f"{folder / written[-1]}",

@@ -6,7 +6,6 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from numbers import Integral
-from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,19 +38,20 @@ from vibroimpact.dynamics.shaken.steady import steady_modes
 from vibroimpact.dynamics.status import Ended, end_in_words, status_of
 from vibroimpact.dynamics.truncation import truncation_estimates
 from vibroimpact.errors import InputError, choices
+from vibroimpact.report.html_report import html_summary
+from vibroimpact.report.reported import Reported
 
 if TYPE_CHECKING:
-    import plotly.graph_objects as go
-
-    from vibroimpact import Result
     from vibroimpact.dynamics.vibrating.segments import VibratingSegment
 
 # what vibrates is imported in the methods: a drop of rigid bodies does not load it
 
 
 @dataclass(frozen=True, eq=False)
-class Response:
+class Response(Reported, reported_in="vibroimpact.runs.response_report"):
     """Response of one drop, or of a batch.
+
+    Of one drop with histories it has the report of its `Result`, with charts by the same names.
 
     Attributes
     ----------
@@ -327,54 +327,9 @@ class Response:
         """Estimated relative error of the largest force by modal truncation, by the body's name."""
         return truncation_estimates(self.problem, self.impacts) if self.problem.vibrates else {}
 
-    def save(self, directory: str | PathLike[str], *, force: bool = False) -> None:
-        """Write the result folder: case, table, summary, NetCDF file and report.
-
-        Parameters
-        ----------
-        directory : path
-            The folder to make; it appears whole or not at all.
-        force : bool, default False
-            Replace an existing result folder.
-
-        Raises
-        ------
-        InputError
-            If the folder exists or can't be made, or the response is of several drops or without
-            histories.
-        """
-        if self.problem.shape != ():
-            raise InputError("save writes one drop: response.drop(0).save(...)")
-        import vibroimpact  # the only import upwards: writing lies above the dynamics
-
-        vibroimpact.save_result(self, directory, force=force)
-
-    def plot(self, name: str = "position") -> go.Figure:
-        """Return a chart of one drop as a figure of plotly, by its name.
-
-        See `vibroimpact.plot_result`.
-
-        Parameters
-        ----------
-        name : str, default "position"
-            Name of the chart, such as "force", "energy" or "sensor a1".
-
-        Raises
-        ------
-        InputError
-            If there is no such chart, or the response is of several drops or without histories.
-        """
-        return self._result.plot(name)
-
     def _repr_html_(self) -> str | None:
-        one = self.problem.shape == () and self.bounces is not None
-        return self._result._repr_html_() if one else None
-
-    @cached_property
-    def _result(self) -> Result:
-        import vibroimpact  # as in `save`
-
-        return vibroimpact.result_of(self)
+        has_report = self.problem.shape == () and self.bounces is not None
+        return html_summary(self.report) if has_report else None
 
     # the history of one drop, segment by segment
     # ---------------------------------------------------

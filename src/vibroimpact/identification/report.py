@@ -11,11 +11,11 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.cases.build import resolved_case
+from vibroimpact.files.result_folder import CASE, write_case
 from vibroimpact.identification.charts import identification_charts
 from vibroimpact.identification.identify import Identification
 from vibroimpact.report.report import Explanation, Note, Report, Section, Table, table_of
 from vibroimpact.results.csv_files import write_columns
-from vibroimpact.results.folder import CASE, write_case
 from vibroimpact.signals.estimate import Estimate
 from vibroimpact.units.display import digits, multiple
 

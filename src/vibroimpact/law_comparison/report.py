@@ -11,6 +11,7 @@ import numpy as np
 from vibroimpact._version import __version__
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS, impact_columns
+from vibroimpact.files.result_folder import write_case
 from vibroimpact.law_comparison.charts import comparison_charts
 from vibroimpact.law_comparison.comparison import Comparison
 from vibroimpact.report.report import (
@@ -23,7 +24,6 @@ from vibroimpact.report.report import (
     Table,
 )
 from vibroimpact.results.csv_files import impact_rows, write_csv
-from vibroimpact.results.folder import write_case
 from vibroimpact.results.result import Result
 from vibroimpact.runs.tables import formatted_column
 from vibroimpact.units.display import MISSING, text

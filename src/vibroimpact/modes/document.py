@@ -4,14 +4,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 from vibroimpact._version import __version__
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.cases.elastic.meshes import meshes_of
-from vibroimpact.cases.elastic.modes import BodyModes
+from vibroimpact.cases.elastic.modes import BodyModes, Modes
 from vibroimpact.results.peaks import known_errors
 from vibroimpact.structures.recipe import model_key
 from vibroimpact.structures.stated_materials import contradictions
@@ -39,11 +38,11 @@ POINT_COLUMNS = (
 )
 
 
-def modes_document(case: Case, modes: Mapping[str, BodyModes]) -> dict[str, Any]:
+def modes_document(modes: Modes) -> dict[str, Any]:
     """Return what `modes --json` prints: the summary of the folder, and for each body the
     rows of `modes.csv` and `points.csv`.
     """
-    summary = summary_of_modes(case, modes)
+    summary = summary_of_modes(modes)
     tables = {
         name: {"modes": mode_rows(name, body), "points": point_rows(name, body)}
         for name, body in modes.items()
@@ -54,10 +53,10 @@ def modes_document(case: Case, modes: Mapping[str, BodyModes]) -> dict[str, Any]
     }
 
 
-def summary_of_modes(case: Case, modes: Mapping[str, BodyModes]) -> dict[str, Any]:
+def summary_of_modes(modes: Modes) -> dict[str, Any]:
     """Return the content of `summary.json` in the folder of modes."""
     return {
-        "name": case.name,
+        "name": modes.case.name,
         "version": __version__,
         "modes": {name: _body_summary(body) for name, body in modes.items()},
     }

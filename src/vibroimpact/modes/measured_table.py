@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+from vibroimpact.report.report import Table
+
 
 class MeasuredTable(NamedTuple):
     """Measured modes beside those of a case.
 
-    `headers` and `cells` are the table of the page, `texts` the headers of its columns of words;
-    `columns` and `rows` the table of `measured.csv`; and `doubts` what is not sure.
+    `table` is what is shown; `columns` and `rows` are the table of `measured.csv`; and `doubts` is
+    what is not sure.
     """
 
-    headers: Sequence[str]
-    cells: Sequence[Sequence[str]]
-    texts: Sequence[str]
+    table: Table
     columns: Sequence[str]
     rows: Sequence[Mapping[str, Any]]
     doubts: Sequence[str]

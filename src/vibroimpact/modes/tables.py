@@ -1,6 +1,4 @@
-"""What is said of the modes of a body, as text for the terminal and the page: its facts,
-and the table of its lowest modes.
-"""
+"""What is said of the modes of a body: its facts, and the table of its lowest modes."""
 
 from __future__ import annotations
 
@@ -9,6 +7,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.bodies.elastic import ElasticBody
 from vibroimpact.cases.elastic.modes import BodyModes
+from vibroimpact.report.report import Column, Gap, Table
 from vibroimpact.units.display import MISSING, column_texts, fixed
 
 ROWS = 20
@@ -16,18 +15,15 @@ ROWS = 20
 
 _UNKNOWN = "not known"
 
-Cells = tuple[list[tuple[str, str]], list[list[str]]]
-"""Headings with units, and rows."""
 
-
-def body_facts(name: str, found: BodyModes) -> list[tuple[str, str]]:
+def body_facts(found: BodyModes) -> list[tuple[str, str]]:
     """Return mass and mesh of a body, how it is held, its rigid motions and its damping:
     what each is, and words.
     """
     properties, facts = found.model.properties, found.model.facts
     rows = [
         (
-            name,
+            "mesh",
             f"{properties.mass:.6g} kg, {facts['elements']}, {facts['degrees of freedom']} "
             "degrees of freedom",
         ),
@@ -40,38 +36,32 @@ def body_facts(name: str, found: BodyModes) -> list[tuple[str, str]]:
     ]
 
 
-def mode_table(found: BodyModes) -> Cells:
+def mode_table(found: BodyModes) -> Table:
     """Return the table of the lowest modes, and of the highest one if some are left out;
     without columns that say nothing.
     """
-    basis, number = found.basis, len(found.basis.frequencies)
+    basis = found.basis
+    number = len(basis.frequencies)
     shown = list(range(min(ROWS, number))) + ([number - 1] if number > ROWS else [])
+    left_out = number - len(shown)
     effective = basis.participation[:, 2] ** 2
-    headers = [
-        ("mode", ""),
-        ("frequency", "Hz"),
-        ("within", "%"),
-        ("damping ratio", ""),
-        ("shape at contact", "1/sqrt kg"),
-        ("effective mass, vertical", "kg"),
-    ]
+    errors = _error_texts(found.model.frequency_errors[shown])
+    shapes = _fixed_texts(basis.contact[shown], float(np.abs(basis.contact).max()))
+    masses = _fixed_texts(effective[shown], found.model.properties.mass)
     columns = [
-        [str(mode + 1) for mode in shown],
-        column_texts(basis.frequencies[shown], 6),
-        _error_texts(found.model.frequency_errors[shown]),
-        column_texts(basis.damping_ratios[shown], 4),
-        _fixed_texts(basis.contact[shown], float(np.abs(basis.contact).max())),
-        _fixed_texts(effective[shown], found.model.properties.mass),
+        Column("mode", [str(mode + 1) for mode in shown]),
+        Column("frequency", column_texts(basis.frequencies[shown], 6), "Hz"),
+        Column("within", errors, "%"),
+        Column("damping ratio", column_texts(basis.damping_ratios[shown], 4)),
+        Column("shape at contact", shapes, "1/sqrt kg"),
+        Column("effective mass, vertical", masses, "kg"),
     ]
-    told = [number for number, cells in enumerate(columns) if set(cells) - {"0", _UNKNOWN}]
-    return [headers[number] for number in told], [
-        list(row) for row in zip(*(columns[number] for number in told), strict=True)
-    ]
-
-
-def rows_left_out(found: BodyModes) -> int:
-    """Return how many modes the table leaves out, before the highest one."""
-    return max(0, len(found.basis.frequencies) - ROWS - 1)
+    return Table(
+        [column for column in columns if set(column.cells) - {"0", _UNKNOWN}],
+        title="Frequencies",
+        gap=Gap(ROWS, left_out) if left_out else None,
+        file="modes.csv",
+    )
 
 
 def supports_text(body: ElasticBody) -> str:

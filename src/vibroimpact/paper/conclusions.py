@@ -34,9 +34,11 @@ def conclusions(runs: Runs) -> ReportSection:
 def _variable_damping(runs: Runs) -> list[tuple[str, ...]]:
     cells: list[tuple[str, ...]] = []
     for quantity, (_, column, _) in QUANTITIES.items():
-        constant, variable = (
-            float(np.abs(runs.below_theory(damping, column)).max()) for damping in DAMPINGS
-        )
+        largest_errors = {
+            damping: float(np.abs(runs.below_theory(damping, column)).max()) for damping in DAMPINGS
+        }
+        constant = largest_errors["constant"]
+        variable = largest_errors["variable"]
         words = (
             f"(1) With variable damping the largest error of the {quantity} is smaller than "
             "with constant damping"
@@ -53,7 +55,8 @@ def _variable_damping(runs: Runs) -> list[tuple[str, ...]]:
 
 
 def _damping_function(runs: Runs) -> tuple[str, ...]:
-    values, speeds = runs.calibration.values, runs.calibration.observations.speeds
+    values = runs.calibration.values
+    speeds = runs.calibration.observations.speeds
     rises = bool(np.all(np.diff(values) * np.diff(speeds) > 0))
     numbers = (
         f"{values.min():.2f} N s/m at {speeds.min():.2f} m/s to {values.max():.2f} N s/m at "
@@ -68,16 +71,19 @@ def _damping_function(runs: Runs) -> tuple[str, ...]:
 
 
 def _elastic_sphere(runs: Runs, treatment: str) -> tuple[str, ...]:
-    elastic, rigid = (
-        [float(response.impacts[column][0]) for column in ("max_force_N", "rebound_height_m")]
-        for response in (runs.treated(2, treatment), runs.response("type1-variable"))
-    )
+    elastic = runs.treated(2, treatment).impacts
+    elastic_force = float(elastic["max_force_N"][0])
+    elastic_height = float(elastic["rebound_height_m"][0])
+    rigid = runs.response("type1-variable").impacts
+    rigid_force = float(rigid["max_force_N"][0])
+    rigid_height = float(rigid["rebound_height_m"][0])
     words = "(3) An elastic sphere is hit with less force, and rebounds lower, than a rigid one"
     numbers = (
-        f"{elastic[0]:.0f} instead of {rigid[0]:.0f} N, {elastic[1]:.3f} instead of "
-        f"{rigid[1]:.3f} m"
+        f"{elastic_force:.0f} instead of {rigid_force:.0f} N, {elastic_height:.3f} instead of "
+        f"{rigid_height:.3f} m"
     )
-    return words, treatment, holds_text(elastic[0] < rigid[0] and elastic[1] < rigid[1]), numbers
+    holds = elastic_force < rigid_force and elastic_height < rigid_height
+    return words, treatment, holds_text(holds), numbers
 
 
 _ELASTIC_PLATE = (
@@ -120,8 +126,10 @@ def _energy_of_the_plate(runs: Runs, treatment: str) -> tuple[str, ...]:
     """Return the test of the plate's share of the energy released, with its two largest
     energies added as in the paper.
     """
-    response, least = runs.treated(3, treatment), printed("plate.energy_part")
-    history, both = history_of(response), plate_energy_part(response)
+    response = runs.treated(3, treatment)
+    least = printed("plate.energy_part")
+    history = history_of(response)
+    both = plate_energy_part(response)
     at_once = (
         100.0
         * float((history["plate_kinetic_J"] + history["plate_strain_J"]).max())
@@ -143,7 +151,8 @@ def _consumed(runs: Runs, treatment: str) -> tuple[str, ...]:
     first separation and by the second touch.
     """
     response = runs.treated(3, treatment)
-    impacts, put_in = response.impacts, float(response.energy["input_J"])
+    impacts = response.impacts
+    put_in = float(response.energy["input_J"])
     history = response.at([impacts["time_s"][0] + impacts["duration_s"][0], impacts["time_s"][1]])
     dissipated = sum(
         history[name] for name in ("contact_dissipated_J", "sphere_damping_J", "plate_damping_J")

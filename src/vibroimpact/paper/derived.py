@@ -69,7 +69,8 @@ def mesh_mass(kind: int, gravity: float) -> tuple[float, float]:
     >>> [round(mass, 6) for mass in mesh_mass(3, 9.8)]
     [0.090305, 0.090305]
     """
-    force, acceleration = printed(f"type{kind}.max_force"), printed(f"type{kind}.max_acceleration")
+    force = printed(f"type{kind}.max_force")
+    acceleration = printed(f"type{kind}.max_acceleration")
     return (
         (force.value - force.half) / (acceleration.value + acceleration.half + gravity),
         (force.value + force.half) / (acceleration.value - acceleration.half + gravity),
@@ -80,8 +81,6 @@ def fall_beyond_touch(kind: int, gravity: float) -> float:
     """Return the fall of the sphere's centre after first touch [m] that the printed
     energies of Type 2 or 3 imply.
     """
-    released, touch = (
-        printed(f"type{kind}.potential_energy"),
-        printed(f"type{kind}.energy_at_touch"),
-    )
+    released = printed(f"type{kind}.potential_energy")
+    touch = printed(f"type{kind}.energy_at_touch")
     return (released.value - touch.value) / (mesh_mass(kind, gravity)[0] * gravity)

@@ -95,9 +95,12 @@ def _type_1(runs: Runs) -> list[ComparedValue]:
     """Return the largest force and acceleration of Type 1, with sampled peaks as the
     explanation, as for Table 2.
     """
-    impacts, problem = runs.response("type1-variable").impacts, runs.problem("type1-variable")
-    mass, gravity = float(problem.sphere.mass), float(problem.gravity)
-    spacing, high = spacing_bound(runs), float(impacts["max_force_N"][0])
+    impacts = runs.response("type1-variable").impacts
+    problem = runs.problem("type1-variable")
+    mass = float(problem.sphere.mass)
+    gravity = float(problem.gravity)
+    spacing = spacing_bound(runs)
+    high = float(impacts["max_force_N"][0])
     low = contact_pulses(runs)["variable", "force", 1].lowest(spacing)
     words = f"read off samples {1e6 * spacing:.0f} µs apart the peak is"
     force = Explanation(f"{words} {low:.1f} to {high:.1f} N", low, high)
@@ -119,7 +122,8 @@ def _accelerations(runs: Runs) -> list[ComparedValue]:
     and 3 m is the mass of a mesh.
     """
     problem = runs.problem("type1-variable")
-    mass, gravity = float(problem.sphere.mass), float(problem.gravity)
+    mass = float(problem.sphere.mass)
+    gravity = float(problem.gravity)
     rows = []
     for kind in (1, 2, 3):
         force = printed(f"type{kind}.max_force")
@@ -169,8 +173,10 @@ def _statements_under(runs: Runs, treatment: str) -> list[str]:
     """Return for each statement whether it holds under a treatment, with the numbers."""
     two, three = (runs.treated(kind, treatment).impacts for kind in (2, 3))
     second = float(runs.response("type1-variable").impacts["time_s"][1])
-    fifth, other = two["time_s"][-1], three["time_s"][-1]
-    height, lower = two["rebound_height_m"][0], three["rebound_height_m"][0]
+    fifth = two["time_s"][-1]
+    other = three["time_s"][-1]
+    height = two["rebound_height_m"][0]
+    lower = three["rebound_height_m"][0]
     forces = [
         f"{one:.0f} and {another:.0f} N"
         for one, another in zip(two["max_force_N"], three["max_force_N"], strict=True)
@@ -225,7 +231,8 @@ def _force_and_fall(runs: Runs) -> str:
     """Return the sentence on the contradiction between the printed force and the printed
     energies of Type 2.
     """
-    problem, force = runs.problem("type1-variable"), printed("type2.max_force").value
+    problem = runs.problem("type1-variable")
+    force = printed("type2.max_force").value
     law = problem.laws[0]
     assert isinstance(law, AdamsImpact)
     speed = float(runs.response("type1-variable").impacts["approach_speed_m_s"][0])
@@ -292,7 +299,8 @@ def _sag(problem: Problem) -> float:
 def _released(runs: Runs, kind: int) -> list[ComparedValue]:
     """Return the potential energy released down to the lowest point, under each treatment."""
     mass, gravity, fall = _fall(runs)
-    value, deep = printed(f"type{kind}.potential_energy"), 1e3 * fall_beyond_touch(kind, gravity)
+    value = printed(f"type{kind}.potential_energy")
+    deep = 1e3 * fall_beyond_touch(kind, gravity)
     rows = []
     for treatment in TREATMENTS:
         released = energy_released(runs.treated(kind, treatment))
@@ -310,18 +318,14 @@ def _released(runs: Runs, kind: int) -> list[ComparedValue]:
 def _from_height(runs: Runs, kind: int) -> ComparedValue:
     """Return the energy at separation that follows from the printed rebound height."""
     mass, gravity, _ = _fall(runs)
-    height, radius = (
-        printed(f"type{kind}.rebound_height").value,
-        float(runs.problem("type1-variable").sphere.contact_offset),
-    )
+    height = printed(f"type{kind}.rebound_height").value
+    radius = float(runs.problem("type1-variable").sphere.contact_offset)
     response = runs.treated(kind, "identified")
     climbed = energy_at_separation(response) - mass * gravity * float(
         response.impacts["rebound_height_m"][0] - radius
     )
-    low, high = (
-        mesh_mass(kind, gravity)[0] * gravity * (height - radius),
-        mass * gravity * (height - radius) + climbed,
-    )
+    low = mesh_mass(kind, gravity)[0] * gravity * (height - radius)
+    high = mass * gravity * (height - radius) + climbed
     reason = (
         "the mesh has lost a little mass, and the sphere separates while it is still "
         f"indented: {low:.5f} to {high:.5f} J"
@@ -338,7 +342,8 @@ def _from_height(runs: Runs, kind: int) -> ComparedValue:
 
 def _percentage(kind: int, part: str, of: str) -> ComparedValue:
     """Return a printed percentage with the ratio of the two printed energies that define it."""
-    over, under = printed(f"type{kind}.{of}"), printed(f"type{kind}.potential_energy")
+    over = printed(f"type{kind}.{of}")
+    under = printed(f"type{kind}.potential_energy")
     ratio = 100.0 * over.value / under.value
     why = f"{over.text} J of {under.text} J are {ratio:.2f} %: a misprint"
     return ComparedValue(
@@ -407,7 +412,8 @@ def _impact_speed(runs: Runs) -> ComparedValue:
 
 def _plate_percentages() -> list[ComparedValue]:
     """Return the printed percentages with the ratios of the printed numbers that define them."""
-    released, thickness = printed("type3.potential_energy"), printed("plate.size.3")
+    released = printed("type3.potential_energy")
+    thickness = printed("plate.size.3")
     kinetic, strain = (printed(f"plate.{name}_energy") for name in ("kinetic", "strain"))
     parts = {
         "plate.displacement_part": (
@@ -431,9 +437,11 @@ def _peak_decay(runs: Runs) -> tuple[TextTable, str]:
     """Return the decay of the peaks over the impacts, and the sentence whether the
     acceleration decays most slowly, as printed.
     """
-    cells, slowest = [], []
+    cells = []
+    slowest = []
     for treatment in TREATMENTS:
-        response, left = runs.treated(3, treatment), {}
+        response = runs.treated(3, treatment)
+        left = {}
         for name in ("displacement", "velocity", "acceleration"):
             peaks = after_each_impact(history_column(_PLATE_COLUMNS[name]))(response)
             cells.append((treatment, name, *(f"{100.0 * peak / peaks[0]:.2f}" for peak in peaks)))

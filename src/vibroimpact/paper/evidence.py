@@ -100,10 +100,8 @@ class ImpactSplines(NamedTuple):
 
 def impact_splines(runs: Runs) -> ImpactSplines:
     """Return the impact tables of the theory and the simulations over the search ranges."""
-    restitutions, penetrations = (
-        np.linspace(*RESTITUTIONS, _STEPS),
-        np.geomspace(*PENETRATIONS, _STEPS),
-    )
+    restitutions = np.linspace(*RESTITUTIONS, _STEPS)
+    penetrations = np.geomspace(*PENETRATIONS, _STEPS)
     return ImpactSplines(
         _impact_columns_over(
             runs.problem("type1-theory"), "restitution", restitutions, restitutions
@@ -129,7 +127,8 @@ def evidence_of(splines: ImpactSplines) -> tuple[Evidence, ...]:
     splines : ImpactSplines
         Impact tables of the theory and the simulations.
     """
-    theory, variable = splines.theory, splines.variable
+    theory = splines.theory
+    variable = splines.variable
     first, fourth, fifth = (
         printed(name)
         for name in (

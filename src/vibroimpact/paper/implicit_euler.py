@@ -90,56 +90,82 @@ def unresolved_impact(problem: Problem, step: float, phases: Floats) -> dict[str
     ComputationError
         If the sphere does not leave the plate within 20,000 steps.
     """
-    (method, plate), (_, on_sphere, on_plate) = (
-        (_implicit_euler(problem, step), problem.plate.modes),
-        slices_of(problem),
-    )
-    centre_weights = plate.participation[:, 2] / plate.mass if plate is not None else np.zeros(0)
-    least_duration = np.pi / float(plate.angular_frequencies.min()) if plate is not None else 0.0
-    # all phases advance in one batch; the slices pick the modes of each body among the oscillators
-    state, losses = method.start(phases), np.zeros((3, len(phases)))
+    method = _implicit_euler(problem, step)
+    least_duration = _half_period(problem)
+    # all phases advance in one batch
+    state = method.start(phases)
+    losses = np.zeros((3, len(phases)))
     peaks = {name: np.zeros(len(phases)) for name in PEAKS}
     at_separation = {
         name: np.full(len(phases), np.nan) for name in ("separation_speed_m_s", *ENERGY_SHARES)
     }
     separated = np.zeros(len(phases), dtype=bool)
     for number in range(1, _MAX_STEPS + 1):
-        before, (state, force) = state, method.advance(state)
-        losses = losses + method.losses(before, state, force)
-        kinetic, strain = method.system.energies(state)
-        body_energies = (
-            strain[:, on_sphere].sum(axis=1),
-            kinetic[:, on_plate].sum(axis=1),
-            strain[:, on_plate].sum(axis=1),
-        )
-        acceleration = (state.velocity - before.velocity) / step
-        depth, sinking = centre_of(state, method.mass)
-        centre_motion = (
-            part[:, on_plate] @ centre_weights
-            for part in (state.displacement, state.velocity, acceleration)
-        )
-        for name, value in zip(
-            PEAKS, (force, *body_energies, *centre_motion, np.maximum(depth, 0.0)), strict=True
-        ):
+        previous = state
+        state, force = method.advance(previous)
+        losses = losses + method.losses(previous, state, force)
+        for name, value in _peak_quantities(problem, method, previous, state, force).items():
             peaks[name] = np.maximum(peaks[name], np.abs(value))
-        receding = (method.approach(state) < 0.0) & (sinking < 0.0)
-        sphere_energies = 0.5 * method.mass * sinking**2, -method.mass * method.gravity * depth
-        current = (-sinking, *sphere_energies, (kinetic + strain)[:, 1:].sum(axis=1), *losses)
-        for name, value in zip(at_separation, current, strict=True):
+        sinking_speed = centre_of(state, method.mass)[1]
+        receding = (method.approach(state) < 0.0) & (sinking_speed < 0.0)
+        for name, value in _separation_quantities(method, state, losses).items():
             at_separation[name] = np.where(receding & ~separated, value, at_separation[name])
         separated = receding  # a sphere that comes back is recorded anew at its next separation
         if separated.all() and number * step >= least_duration:
-            return {
-                **peaks,
-                **at_separation,
-                "rebound_height_m": method.rebound_height(
-                    problem, at_separation["separation_speed_m_s"]
-                ),
-            }
+            rebound_height = method.rebound_height(problem, at_separation["separation_speed_m_s"])
+            return {**peaks, **at_separation, "rebound_height_m": rebound_height}
     raise ComputationError(
         f"within {_MAX_STEPS} steps of {step:g} s the sphere does not leave the plate, or "
         "half a period of its lowest mode does not pass; take a longer step"
     )
+
+
+def _half_period(problem: Problem) -> float:
+    """Return half a period of the lowest mode of the plate [s]; 0 for a rigid one."""
+    plate = problem.plate.modes
+    return 0.0 if plate is None else np.pi / float(plate.angular_frequencies.min())
+
+
+def _peak_quantities(
+    problem: Problem, method: _ImplicitEuler, previous: State, state: State, force: Floats
+) -> dict[str, Floats]:
+    """Return the current values of the `PEAKS`, each of shape (P,)."""
+    # the slices pick the modes of each body among the oscillators
+    _, on_sphere, on_plate = slices_of(problem)
+    plate = problem.plate.modes
+    centre_weights = np.zeros(0) if plate is None else plate.participation[:, 2] / plate.mass
+    acceleration = (state.velocity - previous.velocity) / method.step
+    kinetic, strain = method.system.energies(state)
+    fall = centre_of(state, method.mass)[0]
+    return {
+        "max_force_N": force,
+        "sphere_strain_J": strain[:, on_sphere].sum(axis=1),
+        "plate_kinetic_J": kinetic[:, on_plate].sum(axis=1),
+        "plate_strain_J": strain[:, on_plate].sum(axis=1),
+        "plate_displacement_m": state.displacement[:, on_plate] @ centre_weights,
+        "plate_velocity_m_s": state.velocity[:, on_plate] @ centre_weights,
+        "plate_acceleration_m_s2": acceleration[:, on_plate] @ centre_weights,
+        "beyond_touch_m": np.maximum(fall, 0.0),
+    }
+
+
+def _separation_quantities(
+    method: _ImplicitEuler, state: State, losses: Floats
+) -> dict[str, Floats]:
+    """Return the current separation speed [m/s] and `ENERGY_SHARES`, each of shape (P,)."""
+    fall, sinking_speed = centre_of(state, method.mass)
+    kinetic, strain = method.system.energies(state)
+    contact_damping, modal_damping, integrator = losses
+    return {
+        "separation_speed_m_s": -sinking_speed,
+        "kinetic_J": 0.5 * method.mass * sinking_speed**2,
+        "potential_J": -method.mass * method.gravity * fall,
+        # all oscillators but the first, which is the sphere as a whole
+        "vibration_J": (kinetic + strain)[:, 1:].sum(axis=1),
+        "contact_dissipated_J": contact_damping,
+        "modal_damping_J": modal_damping,
+        "integrator_J": integrator,
+    }
 
 
 @dataclass(frozen=True)
@@ -158,14 +184,9 @@ class _ImplicitEuler:
     @cached_property
     def velocity_factor(self) -> Floats:
         """Factor of each oscillator velocity over a step, 1/(1 + 2 zeta omega h + omega^2 h^2)."""
-        return np.asarray(
-            1.0
-            / (
-                1.0
-                + self.step * self.system.damping
-                + (self.step * self.system.angular_frequency) ** 2
-            )
-        )
+        damping = self.step * self.system.damping
+        stiffness = (self.step * self.system.angular_frequency) ** 2
+        return np.asarray(1.0 / (1.0 + damping + stiffness))
 
     @cached_property
     def step_compliance(self) -> float:
@@ -176,13 +197,14 @@ class _ImplicitEuler:
         """Return the states at the start of the step in which the surfaces meet: free
         flight without vibration.
         """
-        before = (1.0 - phases) * self.step
-        approach, speed = (
-            -before * (self.touch_speed - 0.5 * self.gravity * before),
-            self.touch_speed - self.gravity * before,
-        )
-        displacement, velocity = (np.zeros((len(phases), self.system.number)) for _ in range(2))
-        displacement[:, 0], velocity[:, 0] = self.mass**0.5 * approach, self.mass**0.5 * speed
+        time_to_touch = (1.0 - phases) * self.step
+        approach = -time_to_touch * (self.touch_speed - 0.5 * self.gravity * time_to_touch)
+        speed = self.touch_speed - self.gravity * time_to_touch
+        # the first oscillator is the sphere as a whole
+        displacement = np.zeros((len(phases), self.system.number))
+        displacement[:, 0] = self.mass**0.5 * approach
+        velocity = np.zeros((len(phases), self.system.number))
+        velocity[:, 0] = self.mass**0.5 * speed
         return State(displacement, velocity, np.zeros((len(phases), 0)))
 
     def approach(self, state: State) -> Floats:
@@ -191,14 +213,14 @@ class _ImplicitEuler:
 
     def advance(self, state: State) -> tuple[State, Floats]:
         """Return the states and the contact forces at the end of a step."""
-        system, step = self.system, self.step
-        velocity = self.velocity_factor * (
-            state.velocity + step * (system.load - system.angular_frequency**2 * state.displacement)
-        )
-        force = self._force(self.approach(self._moved(state, velocity)), self.approach(state))
-        return self._moved(
-            state, velocity - step * force[:, None] * (self.velocity_factor * system.shape)
-        ), force
+        system = self.system
+        step = self.step
+        acceleration = system.load - system.angular_frequency**2 * state.displacement
+        free_velocity = self.velocity_factor * (state.velocity + step * acceleration)
+        free_approach = self.approach(self._moved(state, free_velocity))
+        force = self._force(free_approach, self.approach(state))
+        braking = step * force[:, None] * (self.velocity_factor * system.shape)
+        return self._moved(state, free_velocity - braking), force
 
     def _moved(self, state: State, velocity: Floats) -> State:
         """Return the state at the end of a step, from the velocities there."""
@@ -214,38 +236,39 @@ class _ImplicitEuler:
             static, dissipative = self.law.forces(
                 np.maximum(end, 0.0), (end - start) / self.step, self.touch_speed
             )
-            return np.asarray(
-                force - np.where(end > 0.0, np.maximum(static + dissipative, 0.0), 0.0)
-            )
+            clipped = np.maximum(static + dissipative, 0.0)
+            return np.asarray(force - np.where(end > 0.0, clipped, 0.0))
 
         touching = free_end > 0.0
         if not touching.any():
             return np.zeros_like(free_end)
-        return np.where(
-            touching,
-            find_root(
-                excess,
-                np.zeros_like(free_end),
-                np.where(touching, free_end / self.step_compliance, 1.0),
-            ),
-            0.0,
-        )
+        # at the largest force the surfaces just part; where they do not touch, any bracket will do
+        largest = np.where(touching, free_end / self.step_compliance, 1.0)
+        force = find_root(excess, np.zeros_like(free_end), largest)
+        return np.where(touching, force, 0.0)
 
     def losses(self, before: State, after: State, force: Floats) -> Floats:
         """Return the energy dissipated in a step by contact damping, by modal damping and
         by the method [J], (3, P).
         """
-        system, law = self.system, self.law
-        start, end = self.approach(before), self.approach(after)
-        further, (deep, deeper) = end - start, (np.maximum(start, 0.0), np.maximum(end, 0.0))
-        static, _ = law.forces(deeper, further / self.step, self.touch_speed)
-        in_motion = 0.5 * ((after.velocity - before.velocity) ** 2).sum(axis=1)
-        in_springs = 0.5 * (
-            (system.angular_frequency * (after.displacement - before.displacement)) ** 2
-        ).sum(axis=1)
-        in_contact = static * further - (law.elastic_energy(deeper) - law.elastic_energy(deep))
-        in_modes = self.step * (system.damping * after.velocity**2).sum(axis=1)
-        return np.array([(force - static) * further, in_modes, in_motion + in_springs + in_contact])
+        start = self.approach(before)
+        end = self.approach(after)
+        increase = end - start
+        static, _ = self.law.forces(np.maximum(end, 0.0), increase / self.step, self.touch_speed)
+        contact_damping = (force - static) * increase
+        modal_damping = self.step * (self.system.damping * after.velocity**2).sum(axis=1)
+
+        # what the method loses: kinetic energy of the changes of velocities, strain energy of the
+        # changes of elongations, and work of the static force beyond the elastic energy stored
+        of_velocities = 0.5 * ((after.velocity - before.velocity) ** 2).sum(axis=1)
+        elongation = after.displacement - before.displacement
+        of_elongations = 0.5 * ((self.system.angular_frequency * elongation) ** 2).sum(axis=1)
+        stored_before = self.law.elastic_energy(np.maximum(start, 0.0))
+        stored_after = self.law.elastic_energy(np.maximum(end, 0.0))
+        of_contact = static * increase - (stored_after - stored_before)
+        return np.array(
+            [contact_damping, modal_damping, of_velocities + of_elongations + of_contact]
+        )
 
     def rebound_height(self, problem: Problem, speed: Floats) -> Floats:
         """Return the rebound height of the sphere's centre [m] from its separation speed."""
@@ -258,17 +281,18 @@ def _implicit_euler(problem: Problem, step: float) -> _ImplicitEuler:
     model under a compliant law without memory.
     """
     law = problem.law_of(0)
-    more = (
+    is_superposed = not (
         problem.local_element
         or problem.quasi_static
         or (problem.sphere_inside and problem.sphere.modes is not None)
     )
-    if problem.shape != () or more or not isinstance(law, CompliantLaw) or law.memories():
+    is_one_drop = problem.shape == ()
+    if not (is_one_drop and is_superposed and isinstance(law, CompliantLaw)) or law.memories():
         raise InputError(
             "the implicit Euler method is for one drop of the superposed model, under a "
             "compliant law without memory"
         )
-    mass, gravity = float(problem.sphere.mass), float(problem.gravity)
-    return _ImplicitEuler(
-        system_of(problem, mass, gravity), law, mass, gravity, first_approach_speed(problem), step
-    )
+    mass = float(problem.sphere.mass)
+    gravity = float(problem.gravity)
+    system = system_of(problem, mass, gravity)
+    return _ImplicitEuler(system, law, mass, gravity, first_approach_speed(problem), step)

@@ -21,7 +21,9 @@ def table1(runs: Runs) -> ReportSection:
     all of its inputs.
     """
     case = resolved_case(load_case("paper:type3"))
-    sphere, plate, drop = case["sphere"], case["plate"], case["drop"]
+    sphere = case["sphere"]
+    plate = case["plate"]
+    drop = case["drop"]
     bodies = (("sphere", sphere["material"]), ("plate", plate["material"]))
     values: dict[str, Any] = {
         f"{body}.{name}": material[name] for body, material in bodies for name in _MATERIAL
@@ -52,7 +54,8 @@ def section_3_1(runs: Runs) -> ReportSection:
     """Return the section that compares the contact parameters with Hertz's theory and the
     shipped cases.
     """
-    problem, thin = runs.problem("type1-variable"), printed("full_damping_penetration")
+    problem = runs.problem("type1-variable")
+    thin = printed("full_damping_penetration")
     law = problem.laws[0]
     assert isinstance(law, AdamsImpact)
     rebound = simulate(with_law(problem, full_damping_penetration=thin.value)).impacts[

@@ -31,7 +31,9 @@ def falling_potential(response: Response) -> tuple[Floats, Floats]:
     """Return times [s] and the potential energy of the sphere [J], zero at the start of
     each fall; NaN between falls.
     """
-    history, impacts, problem = history_of(response), response.impacts, response.problem
+    history = history_of(response)
+    impacts = response.impacts
+    problem = response.problem
     gravity = float(problem.gravity)
     tops = impacts["time_s"] + impacts["duration_s"] + impacts["separation_speed_m_s"] / gravity
     heights = np.append(history["position_m"][0], impacts["rebound_height_m"])
@@ -51,8 +53,10 @@ def sphere_strain(response: Response) -> tuple[Floats, Floats]:
     dx/dt = F. F is interpolated linearly between the points of the history, and x is the exact
     solution for that.
     """
-    element, history = response.problem.local_element, history_of(response)
-    time, force = history["time_s"], history["force_N"]
+    element = response.problem.local_element
+    history = history_of(response)
+    time = history["time_s"]
+    force = history["force_N"]
     if element is None:
         return time, history["sphere_strain_J"]
     stiffness, damping = element
@@ -102,7 +106,8 @@ def after_each_impact(timeline: Timeline) -> Callable[[Response], Floats]:
     """Return a function for the largest magnitude between each impact and the next."""
 
     def peaks(response: Response) -> Floats:
-        (time, values), touches = timeline(response), response.impacts["time_s"]
+        (time, values) = timeline(response)
+        touches = response.impacts["time_s"]
         which = np.searchsorted(touches, time, side="right")
         return np.array(
             [np.nanmax(np.abs(values[which == impact])) for impact in range(1, len(touches) + 1)]

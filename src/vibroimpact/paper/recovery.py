@@ -162,19 +162,20 @@ def implied_restitution(evidence: Evidence, restitutions: Floats, penetrations: 
     penetrations : array
         Full-damping penetrations [m].
     """
-    cost = np.sum(
-        evidence.standardised(restitutions[None, :], np.log10(penetrations)[:, None]) ** 2, axis=-1
-    )
+    residuals = evidence.standardised(restitutions[None, :], np.log10(penetrations)[:, None])
+    squares = np.sum(residuals**2, axis=-1)
     # evidence may be independent of the penetration
-    cost = np.broadcast_to(cost, (len(penetrations), len(restitutions)))
-    lowest = np.argmin(cost, axis=1)
+    squares = np.broadcast_to(squares, (len(penetrations), len(restitutions)))
+    lowest = np.argmin(squares, axis=1)
     inside = np.clip(lowest, 1, len(restitutions) - 2)
-    before, here, after = (
-        cost[np.arange(len(penetrations)), inside + shift] for shift in (-1, 0, 1)
-    )
-    vertex = 0.5 * (before - after) / (before - 2.0 * here + after)
-    found = restitutions[inside] + vertex * (restitutions[1] - restitutions[0])
-    return np.where(lowest == inside, found, np.nan)
+    rows = np.arange(len(penetrations))
+    left = squares[rows, inside - 1]
+    middle = squares[rows, inside]
+    right = squares[rows, inside + 1]
+    # vertex of the parabola, in steps of the grid from its middle point
+    vertex = 0.5 * (left - right) / (left - 2.0 * middle + right)
+    implied = restitutions[inside] + vertex * (restitutions[1] - restitutions[0])
+    return np.where(lowest == inside, implied, np.nan)
 
 
 def _joint_fit(evidence: tuple[Evidence, ...]) -> tuple[tuple[Evidence, ...], OptimizeResult]:
@@ -189,8 +190,9 @@ def _joint_fit(evidence: tuple[Evidence, ...]) -> tuple[tuple[Evidence, ...], Op
     fit = _fit(partial(_joint_residuals, rounded), ranges.mean(axis=1), tuple(ranges.T))
     for _ in range(_ROUNDS):
         evidence = tuple(_with_scatter(one, fit.x) for one in evidence)
-        before, fit = fit.x, _fit(partial(_joint_residuals, evidence), fit.x)
-        if np.all(np.abs(fit.x - before) < 1e-10):
+        previous = fit.x
+        fit = _fit(partial(_joint_residuals, evidence), previous)
+        if np.all(np.abs(fit.x - previous) < 1e-10):
             break
     return evidence, fit
 
@@ -220,19 +222,17 @@ def _single_estimate(one: Evidence, at: Floats, which: int) -> Estimate | None:
     """
 
     def residuals(x: Floats) -> Floats:
-        return one.standardised(
-            *(x[0] if number == which else value for number, value in enumerate(at))
-        )
+        parameters = [x[0] if number == which else value for number, value in enumerate(at)]
+        return one.standardised(*parameters)
 
     fit = _fit(residuals, at[which : which + 1])
     steepness = float(np.linalg.norm(fit.jac))
     if steepness == 0.0:
         return None
-    return (
-        _in_metres(fit.x[0], 1.0 / steepness)
-        if which
-        else Estimate(float(fit.x[0]), 1.0 / steepness)
-    )
+    deviation = 1.0 / steepness
+    if which == 0:
+        return Estimate(float(fit.x[0]), deviation)
+    return _in_metres(fit.x[0], deviation)
 
 
 def _in_metres(logarithm: float, deviation: float) -> Estimate:
@@ -413,6 +413,7 @@ def _estimate_text(estimate: Estimate | None, unit: float = 1.0, reach: float = 
     """
     if estimate is None:
         return MISSING
-    value, half = unit * estimate.value, unit * reach * estimate.deviation
+    value = unit * estimate.value
+    half = unit * reach * estimate.deviation
     decimals = max(0, 1 - math.floor(math.log10(half)))
     return f"{fixed(value, decimals)} ± {fixed(half, decimals)}"

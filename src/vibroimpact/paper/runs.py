@@ -75,9 +75,8 @@ class Runs:
         """Return the shortfall of a column of the impact table against the theory [%],
         for a simulation of `DAMPINGS`.
         """
-        simulation, theory = (
-            self.response(f"type1-{name}").impacts[column] for name in (damping, "theory")
-        )
+        simulation = self.response(f"type1-{damping}").impacts[column]
+        theory = self.response("type1-theory").impacts[column]
         return 100.0 * (1.0 - simulation / theory)
 
 

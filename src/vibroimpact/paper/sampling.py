@@ -100,9 +100,8 @@ def contact_pulses(runs: Runs) -> Mapping[tuple[str, str, int], ContactPulse]:
     for name in ("theory", *DAMPINGS):
         response = runs.response(f"type1-{name}")
         for impact in IMPACTS:
-            touch, duration = (
-                float(response.impacts[column][impact - 1]) for column in ("time_s", "duration_s")
-            )
+            touch = float(response.impacts["time_s"][impact - 1])
+            duration = float(response.impacts["duration_s"][impact - 1])
             times = np.linspace(0.0, duration, _POINTS)
             # slightly inside, so that both end points belong to the contact
             history = response.at(touch + np.clip(times, 1e-9 * duration, (1.0 - 1e-9) * duration))
@@ -139,10 +138,8 @@ def error_range(
     >>> round(least, 3), round(largest, 3)
     (5.178, 5.178)
     """
-    theory, simulation = (
-        contact_pulses(runs)["theory", quantity, impact],
-        contact_pulses(runs)[damping, quantity, impact],
-    )
+    theory = contact_pulses(runs)["theory", quantity, impact]
+    simulation = contact_pulses(runs)[damping, quantity, impact]
     lowest = theory.lowest(step)
     least = 100.0 * (1.0 - simulation.value / lowest) if lowest > 0.0 else -math.inf
     return least, 100.0 * (1.0 - simulation.lowest(step) / theory.value)
@@ -275,7 +272,9 @@ def _instants(runs: Runs) -> dict[tuple[str, int], ImpliedInstants]:
 
 
 def _introduction(runs: Runs) -> tuple[str, ...]:
-    step, spacing, gaps = output_step(), spacing_bound(runs), unsampled_gaps(runs)
+    step = output_step()
+    spacing = spacing_bound(runs)
+    gaps = unsampled_gaps(runs)
     durations = runs.response("type1-theory").impacts["duration_s"]
     chance = float(gaps.max() / step) ** len(gaps)
     return (
@@ -297,7 +296,9 @@ def _introduction(runs: Runs) -> tuple[str, ...]:
 
 
 def _errors_table(runs: Runs) -> TextTable:
-    step, spacing, cells = output_step(), spacing_bound(runs), []
+    step = output_step()
+    spacing = spacing_bound(runs)
+    cells = []
     for quantity, damping, impact in _ERRORS:
         which = (quantity, damping, impact)
         (least, most), (low, high) = (error_range(runs, size, *which) for size in (step, spacing))
@@ -323,11 +324,9 @@ def _errors_table(runs: Runs) -> TextTable:
 
 
 def _conclusion(runs: Runs, instants: tuple[ImpliedInstants, ...]) -> tuple[str, ...]:
-    step, spacing, theory = (
-        output_step(),
-        spacing_bound(runs),
-        contact_pulses(runs)["theory", "force", 1],
-    )
+    step = output_step()
+    spacing = spacing_bound(runs)
+    theory = contact_pulses(runs)["theory", "force", 1]
     inside = sum(
         Explanation("", *error_range(runs, spacing, *which)).holds(table2_error(*which))
         for which in _ERRORS
@@ -390,7 +389,8 @@ def _implied_peak(runs: Runs, quantity: str, damping: str, impact: int) -> float
 def _contact_pulse(times: Floats, values: Floats, at: float, largest: float) -> ContactPulse:
     """Return a pulse with its located peak inserted among the samples."""
     top = int(np.searchsorted(times, at))
-    times, values = np.insert(times, top, at), np.insert(values, top, largest)
+    times = np.insert(times, top, at)
+    values = np.insert(values, top, largest)
     # levels are quadratically denser towards the peak, where the width grows as the root of the
     # distance from it
     levels = largest * (1.0 - np.linspace(0.0, 1.0, _LEVELS) ** 2)
@@ -404,5 +404,6 @@ def _crossings(times: Floats, values: Floats, top: int, levels: Floats) -> tuple
     Running maxima make both flanks monotonic: the force of IMPACT may rise again slightly before
     separation, as its damping fades out.
     """
-    up, down = np.maximum.accumulate(values[: top + 1]), np.maximum.accumulate(values[top:][::-1])
+    up = np.maximum.accumulate(values[: top + 1])
+    down = np.maximum.accumulate(values[top:][::-1])
     return np.interp(levels, up, times[: top + 1]), np.interp(levels, down, times[top:][::-1])

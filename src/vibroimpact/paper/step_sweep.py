@@ -66,8 +66,8 @@ class StepSweep:
         """Return the root mean square of the relative differences between the medians and
         target values, (S,).
         """
-        off = [self.median(name) / value - 1.0 for name, value in target.items()]
-        return np.asarray(np.sqrt(np.mean(np.square(off), axis=0)))
+        differences = [self.median(name) / value - 1.0 for name, value in target.items()]
+        return np.asarray(np.sqrt(np.mean(np.square(differences), axis=0)))
 
 
 def superposed(runs: Runs, kind: int, mesh: Mesh) -> Problem:
@@ -91,10 +91,9 @@ def coarse(kind: int, modes: int) -> Problem:
 @cache
 def sweep_steps(problem: Problem, steps: tuple[float, ...] = tuple(STEPS.tolist())) -> StepSweep:
     """Return the unresolved first impact of a problem over step lengths [s]."""
-    found = [unresolved_impact(problem, step, PHASES) for step in steps]
-    return StepSweep(
-        np.array(steps), {name: np.array([one[name] for one in found]) for name in found[0]}
-    )
+    impacts = [unresolved_impact(problem, step, PHASES) for step in steps]
+    results = {name: np.array([impact[name] for impact in impacts]) for name in impacts[0]}
+    return StepSweep(np.array(steps), results)
 
 
 @cache
@@ -104,24 +103,23 @@ def resolved_impact(problem: Problem) -> dict[str, float]:
     """
     response = simulate(replace(problem, impacts=1, duration=None))
     impact = {name: float(values[0]) for name, values in response.impacts.items()}
+    contact_times = np.linspace(0.0, impact["duration_s"], 401)
+    times = contact_times
     plate = problem.plate.modes
-    least_duration = 0.5 / float(plate.frequencies.min()) if plate is not None else 0.0
-    contact, after = (
-        np.linspace(0.0, impact["duration_s"], 401),
-        np.linspace(impact["duration_s"], least_duration, 401),
-    )
-    history = response.at(
-        impact["time_s"] + np.concatenate([contact, after if least_duration > contact[-1] else []])
-    )
-    end = {name: float(values[len(contact) - 1]) for name, values in history.items()}
-    shares = {name: end[name] for name in ENERGY_SHARES if name in end}
-    shares["vibration_J"] = sum(
-        end[f"{body}_J"]
-        for body in ("sphere_vibration", "sphere_strain", "plate_kinetic", "plate_strain")
-    )
-    shares["modal_damping_J"] = end["sphere_damping_J"] + end["plate_damping_J"]
+    half_period = 0.0 if plate is None else 0.5 / float(plate.frequencies.min())
+    if half_period > impact["duration_s"]:
+        later_times = np.linspace(impact["duration_s"], half_period, 401)
+        times = np.concatenate([contact_times, later_times])
+    history = response.at(impact["time_s"] + times)
     peaks = {name: float(np.abs(history[name]).max()) for name in PEAKS if name in history}
     peaks["beyond_touch_m"] = float(problem.sphere.contact_offset - history["position_m"].min())
+
+    separation = len(contact_times) - 1
+    end = {name: float(values[separation]) for name, values in history.items()}
+    shares = {name: end[name] for name in ENERGY_SHARES if name in end}
+    vibrating = ("sphere_vibration_J", "sphere_strain_J", "plate_kinetic_J", "plate_strain_J")
+    shares["vibration_J"] = sum(end[name] for name in vibrating)
+    shares["modal_damping_J"] = end["sphere_damping_J"] + end["plate_damping_J"]
     return {**impact, **peaks, **shares, "integrator_J": 0.0}
 
 
@@ -131,13 +129,10 @@ def paper_impact(runs: Runs, kind: int) -> dict[str, float]:
     """
     problem = runs.problem(f"type{kind}-superposed")
     rise = printed(f"type{kind}.rebound_height").value - float(problem.sphere.contact_offset)
+    force = printed(f"type{kind}.max_force").value
     speed = float(np.sqrt(2.0 * float(problem.gravity) * rise))
-    values = (
-        printed(f"type{kind}.max_force").value,
-        speed,
-        printed(f"type{kind}.strain_energy").value,
-    )
-    return dict(zip(COMPARED, values, strict=True))
+    strain_energy = printed(f"type{kind}.strain_energy").value
+    return dict(zip(COMPARED, (force, speed, strain_energy), strict=True))
 
 
 def closest(problem: Problem, target: dict[str, float]) -> StepSweep:
@@ -145,6 +140,9 @@ def closest(problem: Problem, target: dict[str, float]) -> StepSweep:
     `COMPARED` quantities.
     """
     best = int(np.argmin(sweep_steps(problem).misfit(target)))
-    neighbours = STEPS[max(best - 1, 0)], STEPS[min(best + 1, len(STEPS) - 1)]
-    refined = sweep_steps(problem, tuple(np.geomspace(*neighbours, _REFINED_STEPS).tolist()))
-    return sweep_steps(problem, (float(refined.steps[np.argmin(refined.misfit(target))]),))
+    shorter = STEPS[max(best - 1, 0)]
+    longer = STEPS[min(best + 1, len(STEPS) - 1)]
+    steps = np.geomspace(shorter, longer, _REFINED_STEPS)
+    refined = sweep_steps(problem, tuple(steps.tolist()))
+    step = float(refined.steps[np.argmin(refined.misfit(target))])
+    return sweep_steps(problem, (step,))

@@ -34,9 +34,8 @@ def section_3_2(runs: Runs) -> ReportSection:
     """Return the section on the rebounds and errors that sections 3.2 and 5.1 print for
     rigid bodies.
     """
-    height, depth = (
-        runs.below_theory("constant", name) for name in ("rebound_height_m", "max_indentation_m")
-    )
+    height = runs.below_theory("constant", "rebound_height_m")
+    depth = runs.below_theory("constant", "max_indentation_m")
     rebound = runs.response("type1-constant").impacts["rebound_height_m"][0]
     return ReportSection(
         "Section 3.2: rebounds of rigid bodies",
@@ -104,53 +103,84 @@ def _impacts(runs: Runs) -> TextTable:
 
 def damping_section(runs: Runs) -> ReportSection:
     """Return the section on the calibrated dampings and their function of the approach speed."""
-    found = runs.calibration
-    within = dampings_within(runs, _SEEN)
-    reason = (
-        f"a hypothesis, chosen by hand: any from {{:.2f}} to {{:.2f}} N s/m gives the theory's "
-        f"rebound height to {100.0 * _SEEN:g} %"
+    constant, linear, quadratic = runs.calibration.fit.function.coefficients
+    return ReportSection(
+        "Section 3.2: the damping, and its function of the approach speed",
+        (
+            "Calibration finds the damping with which each impact of IMPACT has the "
+            f"theory's separation speed: y(v) = {constant:.4f} + "
+            f"{linear:.5f} v - {-quadratic:.6f} v^2 in N s/m for v in m/s is the least-squares "
+            "parabola through the values found.",
+        ),
+        (*_damping_rows(runs), *_function_rows(runs)),
+        (_dampings_table(runs),),
     )
-    rows = [
-        ComparedValue(
-            printed(f"damping.{impact}"),
-            float(value),
-            by="calibration",
-            explanations=(Explanation(reason.format(*ends), *map(float, ends)),),
+
+
+def _damping_rows(runs: Runs) -> list[ComparedValue]:
+    """Return the damping of each impact, with the range that gives nearly the same height."""
+    rows = []
+    ranges = dampings_within(runs, _SEEN)
+    for impact, damping, (low, high) in zip(IMPACTS, runs.calibration.values, ranges, strict=True):
+        reason = (
+            f"a hypothesis, chosen by hand: any from {low:.2f} to {high:.2f} N s/m gives the "
+            f"theory's rebound height to {100.0 * _SEEN:g} %"
         )
-        for impact, value, ends in zip(IMPACTS, found.values, within, strict=True)
-    ]
-    fit, reach = _fit_of_printed(runs)
-    by = "least squares through the printed dampings, over the simulation's approach speeds"
-    for power, (value, low, high) in enumerate(
-        zip(fit, fit - reach, fit + reach, strict=True), start=1
-    ):
-        told = (
-            "a hypothesis: least squares with approach speeds of five decimals give "
-            f"{fixed(low, 5)} to {fixed(high, 5)}"
-        )
-        explanation = Explanation(told, float(low), float(high))
+        explanation = Explanation(reason, float(low), float(high))
         rows.append(
             ComparedValue(
-                printed(f"damping_function.{power}"),
-                float(value),
-                by=by,
+                printed(f"damping.{impact}"),
+                float(damping),
+                by="calibration",
                 explanations=(explanation,),
             )
         )
-    exact = found.fit.function
-    speeds = found.observations.speeds
-    columns = (speeds, found.values, exact(speeds), printed_function(speeds))
-    cells = tuple(
-        (
-            str(impact),
-            f"{speed:.5f}",
-            f"{value:.3f}",
-            f"{through:.3f}",
-            printed(f"damping.{impact}").text,
-            f"{read:.3f}",
+    return rows
+
+
+def _function_rows(runs: Runs) -> list[ComparedValue]:
+    """Return the coefficients of the damping function, with their ranges by rounded speeds."""
+    rows = []
+    coefficients, changes = _fit_of_printed(runs)
+    for number, (coefficient, change) in enumerate(
+        zip(coefficients, changes, strict=True), start=1
+    ):
+        low = coefficient - change
+        high = coefficient + change
+        reason = (
+            "a hypothesis: least squares with approach speeds of five decimals give "
+            f"{fixed(low, 5)} to {fixed(high, 5)}"
         )
-        for impact, speed, value, through, read in zip(IMPACTS, *columns, strict=True)
-    )
+        rows.append(
+            ComparedValue(
+                printed(f"damping_function.{number}"),
+                float(coefficient),
+                by="least squares through the printed dampings, over the simulation's approach "
+                "speeds",
+                explanations=(Explanation(reason, float(low), float(high)),),
+            )
+        )
+    return rows
+
+
+def _dampings_table(runs: Runs) -> TextTable:
+    """Return the dampings that were calibrated and printed, with the functions through them."""
+    calibration = runs.calibration
+    speeds = calibration.observations.speeds
+    fitted = calibration.fit.function(speeds)
+    as_printed = printed_function(speeds)
+    cells = []
+    for number, impact in enumerate(IMPACTS):
+        cells.append(
+            (
+                str(impact),
+                f"{speeds[number]:.5f}",
+                f"{calibration.values[number]:.3f}",
+                f"{fitted[number]:.3f}",
+                printed(f"damping.{impact}").text,
+                f"{as_printed[number]:.3f}",
+            )
+        )
     headers = (
         "Impact",
         "Approach speed [m/s]",
@@ -159,39 +189,29 @@ def damping_section(runs: Runs) -> ReportSection:
         "Printed [N s/m]",
         "Printed function [N s/m]",
     )
-    low, middle, high = exact.coefficients
-    return ReportSection(
-        "Section 3.2: the damping, and its function of the approach speed",
-        (
-            "Calibration finds the damping with which each impact of IMPACT has the "
-            f"theory's separation speed: y(v) = {low:.4f} + "
-            f"{middle:.5f} v - {-high:.6f} v^2 in N s/m for v in m/s is the least-squares "
-            "parabola through the values found.",
-        ),
-        tuple(rows),
-        (TextTable(headers, cells, "Damping found and printed"),),
-    )
+    return TextTable(headers, tuple(cells), "Damping found and printed")
 
 
 def dampings_within(runs: Runs, part: float) -> Floats:
     """Return the range of the damping of IMPACT in which each rebound height is within a
     relative `part` of the theory [N s/m], (5, 2).
     """
-    found, problem = runs.calibration, runs.problem("type1-variable")
-    speeds = found.observations.speeds
-    damping, speed = (array.ravel() for array in np.meshgrid(np.linspace(0.97, 1.03, 31), speeds))
-    damping = damping * np.repeat(found.values, 31)
-    drops = with_law(replace(problem, height=None, speed=speed, impacts=1), damping_max=damping)
-    heights = simulate(drops).impacts["rebound_height_m"].reshape(len(speeds), 31)
-    wanted = runs.response("type1-theory").impacts["rebound_height_m"]
-    # reversed, since np.interp needs ascending heights, and they fall with the damping
-    ends = [
-        np.interp([height * (1.0 - part), height * (1.0 + part)], row[::-1], values[::-1])[::-1]
-        for height, row, values in zip(
-            wanted, heights, damping.reshape(len(speeds), 31), strict=True
-        )
-    ]
-    return np.array(ends)
+    calibration = runs.calibration
+    factors = np.linspace(0.97, 1.03, 31)
+    # each impact with its own speed, and with dampings about that which was calibrated for it
+    dampings = factors * calibration.values[:, None]
+    speeds = np.repeat(calibration.observations.speeds, len(factors))
+    single_impacts = replace(runs.problem("type1-variable"), height=None, speed=speeds, impacts=1)
+    drops = with_law(single_impacts, damping_max=dampings.ravel())
+    heights = simulate(drops).impacts["rebound_height_m"].reshape(dampings.shape)
+    theory = runs.response("type1-theory").impacts["rebound_height_m"]
+    ranges = []
+    for number, height in enumerate(theory):
+        ends = [height * (1.0 - part), height * (1.0 + part)]
+        # reversed, since np.interp needs ascending heights, and they fall with the damping
+        of_ends = np.interp(ends, heights[number, ::-1], dampings[number, ::-1])
+        ranges.append(of_ends[::-1])
+    return np.array(ranges)
 
 
 def _fit_of_printed(runs: Runs) -> tuple[Floats, Floats]:
@@ -210,32 +230,11 @@ def table2(runs: Runs) -> ReportSection:
     rows = []
     for quantity, (_, column, _) in QUANTITIES.items():
         for damping in DAMPINGS:
-            for impact, exact in zip(
-                IMPACTS, np.abs(runs.below_theory(damping, column)), strict=True
-            ):
-                # the spacing is estimated without the compression that is tested, so that the test
-                # is not circular
-                spacing = spacing_bound(
-                    runs, (damping, impact) if quantity == "compression" else None
-                )
-                low, high = _magnitudes(*error_range(runs, spacing, quantity, damping, impact))
-                reason = (
-                    f"peaks read off samples {1e6 * spacing:.0f} µs apart give {low:.2f} to "
-                    f"{high:.2f} %"
-                )
-                value = table2_error(quantity, damping, impact)
-                rows.append(
-                    ComparedValue(
-                        value,
-                        float(exact),
-                        by=f"IMPACT, {damping} damping",
-                        explanations=(Explanation(reason, low, high),),
-                    )
-                )
-    worst = max(
-        (table2_error("compression", "variable", impact) for impact in IMPACTS),
-        key=lambda value: value.value,
-    )
+            errors = np.abs(runs.below_theory(damping, column))
+            for impact, error in zip(IMPACTS, errors, strict=True):
+                rows.append(_sampled_error_row(runs, quantity, damping, impact, float(error)))
+    compressions = [table2_error("compression", "variable", impact) for impact in IMPACTS]
+    worst = max(compressions, key=lambda error: error.value)
     rows.append(
         ComparedValue(
             printed("worst_compression.variable"),
@@ -259,8 +258,29 @@ def table2(runs: Runs) -> ReportSection:
     )
 
 
+def _sampled_error_row(
+    runs: Runs, quantity: str, damping: str, impact: int, error: float
+) -> ComparedValue:
+    """Return an error of Table 2, with the range of the errors of sampled peaks."""
+    # the spacing is estimated without the compression that is tested, so that the test is not
+    # circular
+    left_out = (damping, impact) if quantity == "compression" else None
+    spacing = spacing_bound(runs, left_out)
+    low, high = _magnitudes(*error_range(runs, spacing, quantity, damping, impact))
+    reason = f"peaks read off samples {1e6 * spacing:.0f} µs apart give {low:.2f} to {high:.2f} %"
+    return ComparedValue(
+        table2_error(quantity, damping, impact),
+        error,
+        by=f"IMPACT, {damping} damping",
+        explanations=(Explanation(reason, low, high),),
+    )
+
+
 def _magnitudes(low: float, high: float) -> tuple[float, float]:
     """Return the range of the absolute values in a range: the paper prints errors without
     their sign.
     """
-    return (0.0 if low < 0.0 < high else min(abs(low), abs(high))), max(abs(low), abs(high))
+    largest = max(abs(low), abs(high))
+    if low < 0.0 < high:
+        return 0.0, largest
+    return min(abs(low), abs(high)), largest

@@ -109,50 +109,50 @@ def _compared_values(runs: Runs) -> tuple[ComparedValue, ...]:
     """
     rows = []
     for kind in (2, 3):
-        step, found = _fitted_step(runs, kind)
-        for name in [f"type{kind}.{name}" for name in SPHERE_COLUMNS] + (
-            list(PLATE_COLUMNS) if kind == 3 else []
-        ):
-            values = found[_COLUMNS[name]]
-            gives = (
-                f"an unresolved run gives {values.min():.4g} to {values.max():.4g} "
-                f"{printed(name).unit}"
-            )
-            reason = f"a hypothesis: {gives}, depending on where in a step the surfaces meet"
-            explanation = Explanation(reason, float(values.min()), float(values.max()))
-            by = (
-                f"implicit Euler, {_microseconds(step)} "
-                f"µs{', fitted' if kind == 2 else ', step from Type 2'}"
-            )
-            rows.append(
-                ComparedValue(
-                    printed(name),
-                    float(np.median(values)),
-                    by,
-                    explanations=(explanation,),
-                    otherwise=f"{gives}, wherever in a step the surfaces meet",
-                    fitted=kind == 2,
-                    digits=MESH_DIGITS,
-                    made_by=Kind.FITTED_MODEL,
-                )
-            )
+        step, results = _fitted_step(runs, kind)
+        names = [f"type{kind}.{name}" for name in SPHERE_COLUMNS]
+        if kind == 3:
+            names += PLATE_COLUMNS
+        rows += [_compared_value(name, kind, step, results[_COLUMNS[name]]) for name in names]
     return tuple(rows)
 
 
+def _compared_value(name: str, kind: int, step: float, values: Floats) -> ComparedValue:
+    """Return a printed value beside those of unresolved runs, over the phases."""
+    low = float(values.min())
+    high = float(values.max())
+    gives = f"an unresolved run gives {low:.4g} to {high:.4g} {printed(name).unit}"
+    reason = f"a hypothesis: {gives}, depending on where in a step the surfaces meet"
+    source = "fitted" if kind == 2 else "step from Type 2"
+    return ComparedValue(
+        printed(name),
+        float(np.median(values)),
+        by=f"implicit Euler, {_microseconds(step)} µs, {source}",
+        explanations=(Explanation(reason, low, high),),
+        otherwise=f"{gives}, wherever in a step the surfaces meet",
+        fitted=kind == 2,
+        digits=MESH_DIGITS,
+        made_by=Kind.FITTED_MODEL,
+    )
+
+
 def _resolved_words(runs: Runs) -> str:
-    told, modes, nodes, compliance = [], [], [], []
+    results = []
+    modes = []
+    nodes = []
+    compliance = []
     for mesh in ("fine", "coarse"):
         problem = superposed(runs, 2, mesh)
-        told.append(_compared_text(resolved_impact(problem)))
+        results.append(_compared_text(resolved_impact(problem)))
         modes.append(len(problem.sphere.modes.contact) if problem.sphere.modes else 0)
         nodes.append(len(problem.models["sphere"].mesh.nodes))
         compliance.append(1e9 * float(problem.facts["sphere_modal_compliance_m_N"]))
     return (
         "Established: the result of the resolved model. A multibody program with flexible "
         "bodies has law and modes in series, "
-        f"the superposed treatment. The first impact of Type 2 then comes to {told[0]} "
+        f"the superposed treatment. The first impact of Type 2 then comes to {results[0]} "
         f"with {modes[0]} modes of a fine mesh of "
-        f"{nodes[0]} nodes, and to {told[1]} with {modes[1]} of the {3 * nodes[1] - 6} "
+        f"{nodes[0]} nodes, and to {results[1]} with {modes[1]} of the {3 * nodes[1] - 6} "
         f"modes of a coarse mesh of {nodes[1]} nodes, as "
         "many as the program computes of it (the paper has "
         f"{printed('mesh.sphere.nodes').text} nodes). It depends on the modes and the "
@@ -169,17 +169,16 @@ def _resolved_words(runs: Runs) -> str:
 
 def _lost_mass(runs: Runs) -> str:
     problem = runs.problem("type1-variable")
-    return _percent_text(
-        1.0 - mesh_mass(3, float(problem.gravity))[0] / float(problem.sphere.mass), 2
-    )
+    least_mass, _ = mesh_mass(3, float(problem.gravity))
+    return _percent_text(1.0 - least_mass / float(problem.sphere.mass), 2)
 
 
 def _method_words(runs: Runs) -> str:
     step, shares = _mean_shares(runs, 2)
-    whole = sum(shares.values())
+    total = sum(shares.values())
     duration = resolved_impact(superposed(runs, 2, "coarse"))["duration_s"]
-    lost = {
-        name: f"{shares[name]:.3f} J ({100.0 * shares[name] / whole:.1f} %)"
+    share_texts = {
+        name: f"{shares[name]:.3f} J ({100.0 * shares[name] / total:.1f} %)"
         for name in ENERGY_SHARES
     }
     return (
@@ -187,9 +186,10 @@ def _method_words(runs: Runs) -> str:
         "with the contact, dissipates energy "
         f"numerically. In steps of {_microseconds(step)} µs, {duration / step:.1f} to the "
         "resolved contact, the method dissipates "
-        f"{lost['integrator_J']} of the {whole:.3f} J of Type 2, the damping of the "
-        f"contact {lost['contact_dissipated_J']} and that of "
-        f"the modes {lost['modal_damping_J']}; the sphere keeps {lost['kinetic_J']}. These "
+        f"{share_texts['integrator_J']} of the {total:.3f} J of Type 2, the damping of the "
+        f"contact {share_texts['contact_dissipated_J']} and that of "
+        f"the modes {share_texts['modal_damping_J']}; the sphere keeps "
+        f"{share_texts['kinetic_J']}. These "
         f"are means over {len(PHASES)} places of the "
         "touch in a step, on the coarse mesh."
     )
@@ -207,36 +207,35 @@ def _reading_words(runs: Runs) -> str:
 
 
 def _fit_words(runs: Runs) -> str:
-    wanted = paper_impact(runs, 2)
-    (step, off), (own_step, own_off) = (
-        _best_cells(closest(superposed(runs, 2, mesh), wanted), wanted) for mesh in MESHES
-    )
+    as_printed = paper_impact(runs, 2)
+    cells = [
+        _best_cells(closest(superposed(runs, 2, mesh), as_printed), as_printed) for mesh in MESHES
+    ]
+    (coarse_step, coarse_misfit), (fine_step, fine_misfit) = cells
     return (
-        f"On the coarse mesh a step of {step} µs comes closest to the three numbers of "
-        f"Type 2: they are off by {off} % (root mean square). "
-        f"On the fine mesh the best step, {own_step} µs, leaves them off by {own_off} %. "
+        f"On the coarse mesh a step of {coarse_step} µs comes closest to the three numbers of "
+        f"Type 2: they are off by {coarse_misfit} % (root mean square). "
+        f"On the fine mesh the best step, {fine_step} µs, leaves them off by {fine_misfit} %. "
         "With fewer modes of the coarse mesh they are off "
         "by more, as the table shows; with more it was not tried. So three settings were "
         "chosen for three numbers: the step, the mesh and the number of modes."
     )
 
 
-def _best_cells(found: StepSweep, wanted: dict[str, float]) -> tuple[str, str]:
+def _best_cells(sweep: StepSweep, as_printed: dict[str, float]) -> tuple[str, str]:
     """Return a step [µs] and its misfit [%]."""
-    return _microseconds(float(found.steps[0])), f"{100.0 * float(found.misfit(wanted)[0]):.1f}"
+    misfit = float(sweep.misfit(as_printed)[0])
+    return _microseconds(float(sweep.steps[0])), f"{100.0 * misfit:.1f}"
 
 
 def _modes_table(runs: Runs) -> TextTable:
-    wanted, cells = paper_impact(runs, 2), []
+    as_printed = paper_impact(runs, 2)
+    cells = []
     for modes in MODES:
-        found = closest(coarse(2, modes), wanted)
-        cells.append(
-            (
-                str(modes),
-                *_compared_cells(resolved_impact(coarse(2, modes))),
-                *_best_cells(found, wanted),
-            )
-        )
+        problem = coarse(2, modes)
+        resolved = _compared_cells(resolved_impact(problem))
+        best = _best_cells(closest(problem, as_printed), as_printed)
+        cells.append((str(modes), *resolved, *best))
     headers = (
         "modes",
         "force, resolved [N]",
@@ -250,68 +249,67 @@ def _modes_table(runs: Runs) -> TextTable:
 
 def _prediction_words(runs: Runs, rows: tuple[ComparedValue, ...]) -> str:
     predicted = [row for row in rows if not row.fitted]
-    met, missed = (
-        [row for row in predicted if _is_met(row)],
-        [row for row in predicted if not _is_met(row)],
-    )
-    whole = resolved_impact(superposed(runs, 3, "coarse"))
-    vague = [
+    met = [row for row in predicted if _is_met(row)]
+    missed = [row for row in predicted if not _is_met(row)]
+    resolved = resolved_impact(superposed(runs, 3, "coarse"))
+    met_by_resolved = [
         row
         for row in met
-        if abs(whole[_COLUMNS[row.printed.name]] - row.printed.value) <= row.printed.half
+        if abs(resolved[_COLUMNS[row.printed.name]] - row.printed.value) <= row.printed.half
     ]
-    loose = [row for row in met if not row.explanations[0].contains(row.printed)]
+    weak = ""
+    if met_by_resolved:
+        weak = (
+            " Some agree with the resolved run as well, so that they are weak evidence: "
+            f"{_names_text(met_by_resolved)}."
+        )
+    out_of_range = [row for row in met if not row.explanations[0].contains(row.printed)]
+    loose = ""
+    if out_of_range:
+        loose = (
+            " Some lie outside their range, and agree only within their few digits: "
+            f"{_names_text(out_of_range)}."
+        )
     return (
         f"The same step gives Type 3, where nothing is fitted. Of the {len(predicted)} "
         f"numbers compared here, {len(met)} agree, within "
         "their digits, with the median or the range over the places of the touch: "
         f"{_differences_text(met)}. Not in agreement: {_differences_text(missed)}."
-        + (
-            " Some agree with the resolved run as well, so that they are weak evidence: "
-            f"{_names_text(vague)}."
-            if vague
-            else ""
-        )
-        + (
-            " Some lie outside their range, and agree only within their few digits: "
-            f"{_names_text(loose)}."
-            if loose
-            else ""
-        )
+        f"{weak}{loose}"
     )
 
 
 def _counter_evidence(runs: Runs) -> str:
     """Return the evidence against the hypothesis."""
-    two, three = (_fitted_step(runs, kind)[1] for kind in (2, 3))
-    ratio = three["max_force_N"] / two["max_force_N"] - 1.0
+    step, type3 = _fitted_step(runs, 3)
+    _, type2 = _fitted_step(runs, 2)
+    force_increase = type3["max_force_N"] / type2["max_force_N"] - 1.0
     as_printed = printed("type3.max_force").value / printed("type2.max_force").value - 1.0
-    deep = [
-        1e3 * fall_beyond_touch(kind, float(runs.problem("type1-variable").gravity))
-        for kind in (2, 3)
-    ]
-    ranges = [
-        f"{1e3 * found['beyond_touch_m'].min():.2f} to {1e3 * found['beyond_touch_m'].max():.2f} mm"
-        for found in (two, three)
-    ]
-    at_end = unresolved_impact(superposed(runs, 3, "coarse"), _fitted_step(runs, 3)[0], np.ones(1))
-    off = [
-        _more_text(float(at_end[column][0]) / printed(f"type3.{name}").value - 1.0)
+    gravity = float(runs.problem("type1-variable").gravity)
+    printed_falls = [1e3 * fall_beyond_touch(kind, gravity) for kind in (2, 3)]
+    ranges = []
+    for results in (type2, type3):
+        falls = 1e3 * results["beyond_touch_m"]
+        ranges.append(f"{falls.min():.2f} to {falls.max():.2f} mm")
+    touch_at_end = unresolved_impact(superposed(runs, 3, "coarse"), step, np.ones(1))
+    differences = [
+        _more_text(float(touch_at_end[column][0]) / printed(f"type3.{name}").value - 1.0)
         for name, column in SPHERE_COLUMNS.items()
     ]
     return (
         "Evidence against the hypothesis: with the touch at the same place in a step, the "
         "largest force of Type 3 is between "
-        f"{_more_text(float(ratio.min()))} and {_more_text(float(ratio.max()))} than that "
+        f"{_more_text(float(force_increase.min()))} and "
+        f"{_more_text(float(force_increase.max()))} than that "
         "of Type 2; as printed, it is "
         f"{_more_text(as_printed)}. The energies printed at first touch are those of the "
         "fall to touch with the mass of the mesh, to some "
         "1e-5 J, in both types: of a touch at the end of a step, unless they were "
         "calculated by hand. With the touch there, Type 3 has "
-        f"{off[0]} force, {off[1]} rebound height and {off[2]} strain energy "
-        f"than printed. And the printed energies imply a fall of {deep[0]:.2f} and "
-        f"{deep[1]:.2f} mm beyond touch in Types 2 and 3, where "
-        f"unresolved runs give {ranges[0]} and {ranges[1]}, and the three treatments, "
+        f"{differences[0]} force, {differences[1]} rebound height and {differences[2]} "
+        "strain energy than printed. And the printed energies imply a fall of "
+        f"{printed_falls[0]:.2f} and {printed_falls[1]:.2f} mm beyond touch in Types 2 and 3, "
+        f"where unresolved runs give {ranges[0]} and {ranges[1]}, and the three treatments, "
         "which are resolved, more."
     )
 
@@ -321,36 +319,34 @@ def _outcome(runs: Runs, rows: tuple[ComparedValue, ...]) -> str:
         resolved_impact(superposed(runs, 2, "coarse"))["separation_speed_m_s"]
         / paper_impact(runs, 2)["separation_speed_m_s"]
     )
-    parts = []
+    counts = []
     for body, is_plate in (("sphere", False), ("plate", True)):
-        mine = [
+        predicted = [
             row
             for row in rows
             if not row.fitted and (row.printed.name in PLATE_COLUMNS) == is_plate
         ]
-        parts.append(f"{sum(map(_is_met, mine))} of the {len(mine)} numbers of the {body}")
-    found, wanted = (
-        _fitted_step(runs, 3)[1],
-        {column: printed(f"type3.{name}").value for name, column in SPHERE_COLUMNS.items()},
-    )
-    together = np.sqrt(
-        np.mean([(found[column] / value - 1.0) ** 2 for column, value in wanted.items()], axis=0)
-    )
+        met = sum(map(_is_met, predicted))
+        counts.append(f"{met} of the {len(predicted)} numbers of the {body}")
+    as_printed = {name: printed(f"type3.{name}").value for name in SPHERE_COLUMNS}
+    _, results = _fitted_step(runs, 3)
+    squares = [
+        (results[column] / as_printed[name] - 1.0) ** 2 for name, column in SPHERE_COLUMNS.items()
+    ]
+    misfits = np.sqrt(np.mean(squares, axis=0))
     identified = runs.treated(3, "identified").impacts
-    beside = [
-        _more_text(
-            float(identified[SPHERE_COLUMNS[name]][0]) / printed(f"type3.{name}").value - 1.0
-        )
+    differences = [
+        _more_text(float(identified[SPHERE_COLUMNS[name]][0]) / as_printed[name] - 1.0)
         for name in ("max_force", "rebound_height")
     ]
     return (
-        f"So {' and '.join(parts)} in Type 3 agree with the hypothesis, each by itself; at "
+        f"So {' and '.join(counts)} in Type 3 agree with the hypothesis, each by itself; at "
         "the best place of the touch the three of the "
-        f"sphere are jointly off by {_percent_text(float(together.min()))} (root mean "
+        f"sphere are jointly off by {_percent_text(float(misfits.min()))} (root mean "
         "square). The test is not sharp: the identified "
         "treatment, fitted to force and rebound of Type 2, comes near those of Type 3 as "
-        f"well (force {beside[0]}, rebound height "
-        f"{beside[1]}). This shows that an unresolved run of a model whose resolved "
+        f"well (force {differences[0]}, rebound height "
+        f"{differences[1]}). This shows that an unresolved run of a model whose resolved "
         f"rebound is {faster:.1f} times as fast can agree "
         "approximately with the printed numbers. It is not a proof: "
         "other settings may agree as well."
@@ -360,33 +356,18 @@ def _outcome(runs: Runs, rows: tuple[ComparedValue, ...]) -> str:
 def _mesh_table(runs: Runs) -> TextTable:
     cells = []
     for kind in (2, 3):
-        wanted = paper_impact(runs, kind)
-        cells.append((f"{kind}", "printed", "", *_compared_cells(wanted), ""))
+        as_printed = paper_impact(runs, kind)
+        cells.append((f"{kind}", "printed", "", *_compared_cells(as_printed), ""))
         for mesh in MESHES:
-            problem, step = (
-                superposed(runs, kind, mesh),
-                float(closest(superposed(runs, 2, mesh), paper_impact(runs, 2)).steps[0]),
-            )
-            cells.append(
-                (
-                    f"{kind}",
-                    f"{mesh} mesh, resolved",
-                    "",
-                    *_compared_cells(resolved_impact(problem)),
-                    "",
-                )
-            )
-            found = sweep_steps(problem, (step,))
-            medians = {name: float(found.median(name)[0]) for name in COMPARED}
-            cells.append(
-                (
-                    f"{kind}",
-                    f"{mesh} mesh, unresolved",
-                    _microseconds(step),
-                    *_compared_cells(medians),
-                    f"{100.0 * found.misfit(wanted)[0]:.1f}",
-                )
-            )
+            problem = superposed(runs, kind, mesh)
+            resolved = _compared_cells(resolved_impact(problem))
+            cells.append((f"{kind}", f"{mesh} mesh, resolved", "", *resolved, ""))
+            step = float(closest(superposed(runs, 2, mesh), paper_impact(runs, 2)).steps[0])
+            sweep = sweep_steps(problem, (step,))
+            medians = {name: float(sweep.median(name)[0]) for name in COMPARED}
+            misfit = f"{100.0 * sweep.misfit(as_printed)[0]:.1f}"
+            unresolved = (_microseconds(step), *_compared_cells(medians), misfit)
+            cells.append((f"{kind}", f"{mesh} mesh, unresolved", *unresolved))
     headers = (
         "Type",
         "run",
@@ -406,18 +387,15 @@ def _mesh_table(runs: Runs) -> TextTable:
 def _energy_table(runs: Runs) -> TextTable:
     cells = []
     for kind in (2, 3):
-        whole, (_, shares) = (
-            resolved_impact(superposed(runs, kind, "coarse")),
-            _mean_shares(runs, kind),
-        )
-        for name, found in (("resolved", whole), ("unresolved", shares)):
-            cells.append(
-                (
-                    f"{kind}",
-                    name,
-                    *(f"{round(found[share], 4) + 0.0:.4f}" for share in ENERGY_SHARES),
-                )
-            )
+        _, mean_shares = _mean_shares(runs, kind)
+        shares_of = {
+            "resolved": resolved_impact(superposed(runs, kind, "coarse")),
+            "unresolved": mean_shares,
+        }
+        for name, shares in shares_of.items():
+            # 0.0 is added to turn -0 into 0
+            texts = [f"{round(shares[share], 4) + 0.0:.4f}" for share in ENERGY_SHARES]
+            cells.append((f"{kind}", name, *texts))
     title = (
         "Where the energy of the touch is at separation [J] (coarse mesh; unresolved: means "
         "over the places of the touch)"
@@ -426,18 +404,19 @@ def _energy_table(runs: Runs) -> TextTable:
 
 
 def _plate_table(runs: Runs) -> TextTable:
-    (_, found), whole = _fitted_step(runs, 3), resolved_impact(superposed(runs, 3, "coarse"))
+    _, results = _fitted_step(runs, 3)
+    resolved = resolved_impact(superposed(runs, 3, "coarse"))
     cells = []
     for name, column in PLATE_COLUMNS.items():
-        values, value = found[column], printed(name)
-        spread = f"{values.min():.4g} to {values.max():.4g}"
+        value = printed(name)
+        values = results[column]
         cells.append(
             (
                 f"{value.what} [{value.unit}]",
                 value.text,
                 f"{np.median(values):.4g}",
-                spread,
-                f"{whole[column]:.4g}",
+                f"{values.min():.4g} to {values.max():.4g}",
+                f"{resolved[column]:.4g}",
             )
         )
     return TextTable(
@@ -452,18 +431,16 @@ def _fitted_step(runs: Runs, kind: int) -> tuple[float, dict[str, Floats]]:
     or 3 with it, over the phases.
     """
     step = float(closest(superposed(runs, 2, "coarse"), paper_impact(runs, 2)).steps[0])
-    return step, {
-        name: values[0]
-        for name, values in sweep_steps(superposed(runs, kind, "coarse"), (step,)).found.items()
-    }
+    sweep = sweep_steps(superposed(runs, kind, "coarse"), (step,))
+    return step, {name: values[0] for name, values in sweep.found.items()}
 
 
 def _mean_shares(runs: Runs, kind: int) -> tuple[float, dict[str, float]]:
     """Return the fitted step [s] and the energy shares at separation [J]: means over the
     phases, since medians do not add up.
     """
-    step, found = _fitted_step(runs, kind)
-    return step, {name: float(found[name].mean()) for name in ENERGY_SHARES}
+    step, results = _fitted_step(runs, kind)
+    return step, {name: float(results[name].mean()) for name in ENERGY_SHARES}
 
 
 def _compared_text(values: dict[str, float]) -> str:

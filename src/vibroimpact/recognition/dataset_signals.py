@@ -25,9 +25,9 @@ from vibroimpact.files.damaged_part import check_hdf5
 from vibroimpact.files.hdf5 import attribute, members, read_array, short_reason
 from vibroimpact.files.plain_names import one_line
 from vibroimpact.files.reading import with_path
+from vibroimpact.files.result_folder import SUMMARY
 from vibroimpact.quoting import quoted
 from vibroimpact.recognition.labelled_signals import GROUPS, LabelledSignals, SensorSignals
-from vibroimpact.results.folder import SUMMARY
 from vibroimpact.studies.study import load_study
 from vibroimpact.studies.study_folder import DATASET as STUDY
 from vibroimpact.studies.study_folder import is_study

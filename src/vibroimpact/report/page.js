@@ -25,13 +25,13 @@
     const select = $("view");
     if (!select) return;
     // long contacts, and those in the middle of many, have no view
-    const viewOf = (impact) => Array.from(select.options).findIndex((option) => option.text === `Impact ${impact}`) - 1;
+    const viewOf = (row) => Array.from(select.options).findIndex((option) => option.text === row.dataset.view) - 1;
     const move = (number) => {
       select.value = String(number);
       for (const chart of charts.values()) if (chart.chart.views.length) chart.update({ view: number < 0 ? null : number, ranges: {} });
       $("view-before").disabled = number < 0;
       $("view-after").disabled = number + 1 >= select.options.length - 1;
-      for (const row of document.querySelectorAll("[data-impact]")) row.classList.toggle("chosen", number >= 0 && viewOf(row.dataset.impact) === number);
+      for (const row of document.querySelectorAll("[data-view]")) row.classList.toggle("chosen", number >= 0 && viewOf(row) === number);
       for (const [name, chart] of charts) {
         const words = document.querySelector(`[data-headline="${CSS.escape(name)}"]`);
         if (words) words.textContent = chart.headline;
@@ -40,10 +40,10 @@
     select.addEventListener("change", () => move(Number(select.value)));
     $("view-before").addEventListener("click", () => move(Number(select.value) - 1));
     $("view-after").addEventListener("click", () => move(Number(select.value) + 1));
-    for (const row of document.querySelectorAll("[data-impact] button")) {
-      const view = viewOf(row.closest("[data-impact]").dataset.impact);
-      if (view < 0) row.disabled = true;
-      row.addEventListener("click", () => { move(view); $("charts").scrollIntoView(); });
+    for (const button of document.querySelectorAll("[data-view] button")) {
+      const view = viewOf(button.closest("[data-view]"));
+      if (view < 0) button.disabled = true;
+      button.addEventListener("click", () => { move(view); $("charts").scrollIntoView(); });
     }
     move(-1);
   };

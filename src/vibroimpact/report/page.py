@@ -36,26 +36,6 @@ def render_page(
 ) -> str:
     """Return a report as one self-contained page whose charts can be explored, without network.
 
-    Parameters
-    ----------
-    package, scene, **values
-        As `render_drawn_page` takes them.
-    charts : sequence of Chart
-        The charts.
-    """
-    return render_drawn_page(
-        package, [drawn(chart, plotly_chart) for chart in charts], scene, **values
-    )
-
-
-def render_drawn_page(
-    package: str,
-    charts: Sequence[dict[str, Any]],
-    scene: dict[str, Any] | None = None,
-    **values: Any,
-) -> str:
-    """Return a report as one self-contained page, of charts as `plotly_chart` returns them.
-
     The content policy of the page allows its own scripts alone, by their checksums. Charts and
     plotly itself lie compressed in it.
 
@@ -64,14 +44,15 @@ def render_drawn_page(
     package : str
         Package that holds the template `page.html.j2`, which extends the `base.html.j2` of this
         one.
-    charts : sequence of dict
+    charts : sequence of Chart
         The charts; the template places them by `figure(charts.NAME)`.
     scene : dict, optional
         The plate in motion, as `runs.scene.scene_of` returns it.
     **values
         What else the template takes; texts are escaped.
     """
-    data = pack({"charts": charts, "scene": scene, "palette": palette()})
+    figures = [drawn(chart, plotly_chart) for chart in charts]
+    data = pack({"charts": figures, "scene": scene, "palette": palette()})
     scripts = [
         _script(_CHARTS, "scripts/arrays.js"),
         _script(_CHARTS, "scripts/charts.js"),
@@ -79,11 +60,11 @@ def render_drawn_page(
         _script(__package__, "page.js"),
     ]
     return template(package).render(
-        charts={chart["name"]: chart for chart in charts},
-        heights={chart["name"]: chart["layout"]["height"] + 90 for chart in charts},
-        keys={chart["name"]: _keys_of(chart) for chart in charts},
+        charts={figure["name"]: figure for figure in figures},
+        heights={figure["name"]: figure["layout"]["height"] + 90 for figure in figures},
+        keys={figure["name"]: _keys_of(figure) for figure in figures},
         scene=scene is not None,
-        views=max((chart["views"] for chart in charts), key=len, default=()),
+        views=max((figure["views"] for figure in figures), key=len, default=()),
         theme=Markup(_script(_CHARTS, "scripts/theme.css")),
         scripts=[Markup(script) for script in scripts],
         hashes=" ".join(

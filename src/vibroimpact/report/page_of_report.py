@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from vibroimpact._version import __version__
 from vibroimpact.report.page import render_page
 from vibroimpact.report.report import Report
 
@@ -21,10 +20,11 @@ def page_of_report(report: Report) -> str:
     >>> '<p class="status">They collide.</p>' in page
     True
     """
+    scene = next(iter(report.scenes), None)
     return render_page(
         __package__,
-        report.charts,
-        name=report.title,
+        report.page_charts,
+        None if scene is None else dict(scene.data),
+        name=report.title[:1].upper() + report.title[1:],
         report=report,
-        version=__version__,
     )

@@ -8,8 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
+from vibroimpact._version import __version__
 from vibroimpact.charts.chart import Chart
 
 
@@ -27,12 +28,41 @@ class Column:
         Unit of the cells; empty if there is none.
     is_text : bool
         Texts, aligned on the left; otherwise numbers.
+    note : str
+        A sentence on how it is read, which the terminal shows where it shows the column.
+    wraps : bool
+        Long texts, which the page breaks into lines.
+    tones : sequence of str
+        How each cell is coloured on the page: "good", "fair", "soft", "bad", or "" for none; by
+        default no cell is.
+    least_width : int
+        Width of a terminal [characters] below which the column is left out.
     """
 
     heading: str
     cells: Sequence[str]
     unit: str = ""
     is_text: bool = False
+    note: str = ""
+    wraps: bool = False
+    tones: Sequence[str] = ()
+    least_width: int = 0
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Rows that are left out of a long table.
+
+    Parameters
+    ----------
+    row : int
+        How many rows stand before it.
+    left_out : int
+        How many rows are left out.
+    """
+
+    row: int
+    left_out: int
 
 
 @dataclass(frozen=True)
@@ -47,6 +77,16 @@ class Table:
         What the table holds, where its section has several.
     bold : collection of int
         Numbers of rows that are set apart, from 0.
+    gap : Gap, optional
+        Where rows are left out.
+    file : str
+        File of the folder that has all rows and columns, in SI.
+    shows_views : bool
+        Whether its rows are named as the views of the charts, each of which a button shows.
+    expendable : sequence of str
+        Headings of columns that a narrow terminal leaves out, the first one first.
+    short : Table, optional
+        The table with shorter words and fewer rows, which the terminal shows in its place.
     """
 
     kind: ClassVar[str] = "table"
@@ -54,6 +94,22 @@ class Table:
     columns: Sequence[Column]
     title: str = ""
     bold: Sequence[int] = ()
+    gap: Gap | None = None
+    file: str = ""
+    shows_views: bool = False
+    expendable: Sequence[str] = ()
+    short: Table | None = None
+
+    @property
+    def headings(self) -> list[tuple[str, str]]:
+        """Heading and unit of each column."""
+        return [(column.heading, column.unit) for column in self.columns]
+
+    @property
+    def rows(self) -> list[list[str]]:
+        """The cells of each row that is there."""
+        cells = zip(*(column.cells for column in self.columns), strict=True)
+        return [list(row) for row in cells]
 
 
 @dataclass(frozen=True)
@@ -74,21 +130,111 @@ class Paragraph:
 
 
 @dataclass(frozen=True)
-class Note:
-    """Sentences on how a table is read."""
+class Heading:
+    """A heading within a section."""
 
-    kind: ClassVar[str] = "note"
+    kind: ClassVar[str] = "heading"
 
     text: str
 
 
 @dataclass(frozen=True)
-class Explanation:
-    """Longer sentences on methods and definitions, for the page alone."""
+class Note:
+    """Sentences on how a table is read, or on what went wrong.
+
+    Parameters
+    ----------
+    text : str
+        The sentences.
+    is_warning : bool
+        Whether the terminal sets them apart as a warning.
+    """
 
     kind: ClassVar[str] = "note"
 
     text: str
+    is_warning: bool = False
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Longer sentences on methods and definitions, for the page alone.
+
+    Parameters
+    ----------
+    text : str
+        The sentences.
+    short : str
+        What the terminal says in their place.
+    """
+
+    kind: ClassVar[str] = "note"
+
+    text: str
+    short: str = ""
+
+
+@dataclass(frozen=True)
+class Warnings:
+    """What may be wrong, where the page says it; the terminal says it at its end.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        Sentences, each without the full stop.
+    """
+
+    kind: ClassVar[str] = "warnings"
+
+    texts: Sequence[str]
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A chart within a section of the page.
+
+    Parameters
+    ----------
+    chart : Chart
+        The chart.
+    has_title : bool
+        Whether its title stands above it.
+    """
+
+    kind: ClassVar[str] = "figure"
+
+    chart: Chart
+    has_title: bool = True
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A plate in motion on the page.
+
+    Parameters
+    ----------
+    data : mapping
+        What is drawn, with arrays in SI.
+    label : str
+        What moves, in words.
+    caption : str
+        How it is drawn, in sentences.
+    modes : sequence of str
+        Names of the motions to choose from, if there are several.
+    still : Chart, optional
+        The chart that shows the same in files and notebooks.
+    animation : callable, optional
+        Returns the motion as GIF, for the files of the figures.
+    """
+
+    kind: ClassVar[str] = "scene"
+
+    data: Mapping[str, Any]
+    label: str
+    caption: str
+    modes: Sequence[str] = ()
+    still: Chart | None = None
+    animation: Callable[[], bytes] | None = None
 
 
 @dataclass(frozen=True)
@@ -115,7 +261,7 @@ class Code:
     is_short: bool = False
 
 
-Block = Table | Facts | Paragraph | Note | Explanation | Code
+Block = Table | Facts | Paragraph | Heading | Note | Explanation | Warnings | Figure | Scene | Code
 
 
 @dataclass(frozen=True)
@@ -127,17 +273,25 @@ class Section:
     name : str
         Plain name, to which the contents link.
     title : str
-        The heading.
+        The heading; without one it is not in the contents.
     blocks : sequence of Block
         What it consists of.
     after_charts : bool
         Whether it follows the charts.
+    medium : str
+        Where it is shown: on the "page", in the "terminal", or in "both".
     """
 
     name: str
     title: str
     blocks: Sequence[Block]
     after_charts: bool = False
+    medium: Literal["page", "terminal", "both"] = "both"
+
+    @property
+    def charts(self) -> tuple[Chart, ...]:
+        """The charts within it."""
+        return tuple(block.chart for block in self.blocks if isinstance(block, Figure))
 
 
 @dataclass(frozen=True)
@@ -153,36 +307,107 @@ class Report:
     summary : mapping
         Content of `summary.json` in the folder; in SI.
     charts : sequence of Chart
-        The charts.
+        The charts that follow the sections.
+    main_chart : str
+        Name of the chart that is plotted where none is named; by default the first one.
+    further_charts : mapping of str to callable
+        What makes each chart that is plotted by its name alone.
+    above_charts, below_charts : str
+        Sentences above and below the charts on the page.
     files : mapping of str to callable
         Further files of the folder by their names, each with the function that writes it to a path.
+    checked_files : sequence of str
+        Those of them whose checksums `summary.json` records.
     answer : str
         The finding in a sentence.
+    has_failed : bool
+        Whether the answer is that there is no result.
     sentences : sequence of str
         What else is said of it.
     warnings : sequence of str
         What may be wrong with it, each without the full stop.
-    provenance : str
-        What it was made from, in words that follow the version of the program.
+    provenance : str or Facts
+        What it was made from: words that follow the version of the program, or facts with it.
     data : mapping, optional
         What `--json` prints; by default the summary.
+    opening : sequence of Block
+        What precedes the contents of the page.
+    warnings_note : str
+        How the warnings are read.
+    commands : str
+        Where the commands are run that end the labels of points in charts, such as "In the study's
+        folder"; empty if they end with none.
+    version : str
+        Version of the program that computed the finding.
     """
 
     title: str
     sections: Sequence[Section]
     summary: Mapping[str, Any]
     charts: Sequence[Chart] = ()
+    main_chart: str = ""
+    further_charts: Mapping[str, Callable[[], Chart]] = field(default_factory=dict)
+    above_charts: str = ""
+    below_charts: str = ""
     files: Mapping[str, Callable[[Path], object]] = field(default_factory=dict)
+    checked_files: Sequence[str] = ()
     answer: str = ""
+    has_failed: bool = False
     sentences: Sequence[str] = ()
     warnings: Sequence[str] = ()
-    provenance: str = ""
+    provenance: str | Facts = ""
     data: Mapping[str, Any] | None = None
+    opening: Sequence[Block] = ()
+    warnings_note: str = ""
+    commands: str = ""
+    version: str = __version__
 
     @property
     def document(self) -> dict[str, Any]:
         """What `--json` prints."""
         return dict(self.summary if self.data is None else self.data)
+
+    @property
+    def page_charts(self) -> tuple[Chart, ...]:
+        """The charts of the page, in its order."""
+        ahead = [
+            chart
+            for section in self.sections
+            if not section.after_charts
+            for chart in section.charts
+        ]
+        behind = [
+            chart for section in self.sections if section.after_charts for chart in section.charts
+        ]
+        return (*ahead, *self.charts, *behind)
+
+    @property
+    def all_charts(self) -> tuple[Chart, ...]:
+        """The charts of the page, and those that show in files what moves on it."""
+        stills = [scene.still for scene in self.scenes if scene.still is not None]
+        return (*self.page_charts, *stills)
+
+    @property
+    def scenes(self) -> list[Scene]:
+        """What moves on the page."""
+        return [
+            block
+            for section in self.sections
+            for block in section.blocks
+            if isinstance(block, Scene)
+        ]
+
+    @property
+    def all_warnings(self) -> list[str]:
+        """The warnings, with those of the sections."""
+        of_sections = [
+            text
+            for section in self.sections
+            for block in section.blocks
+            if isinstance(block, Warnings)
+            for text in block.texts
+        ]
+        return [*self.warnings, *of_sections]
 
 
 _MOST_ROWS = 50
@@ -228,8 +453,9 @@ def table_of(
     Examples
     --------
     >>> table = table_of(["Law", ("Force", "N")], [["hertz", "20"], ["tsuji", "19"]])
-    >>> table.columns[1]
-    Column(heading='Force', cells=('20', '19'), unit='N', is_text=False)
+    >>> force = table.columns[1]
+    >>> force.heading, force.unit, force.cells
+    ('Force', 'N', ('20', '19'))
     """
     columns = []
     for number, heading in enumerate(headings):

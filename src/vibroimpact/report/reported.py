@@ -1,4 +1,4 @@
-"""Findings with a report: saved, drawn and read as data by one interface."""
+"""Findings with a report: read as data, drawn and saved by one interface."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     import plotly.graph_objects as go
 
 
-class Reported:
-    """A finding of a task, with its report.
+class WithReport:
+    """A finding of a task with its report, which is read as data and drawn.
 
     A subclass names the module whose function `report_of` returns the report of a finding: what a
     task computes does not depend on how it is reported.
@@ -41,20 +41,60 @@ class Reported:
     @property
     def charts(self) -> dict[str, Chart]:
         """The charts of the report, by name."""
-        return {chart.name: chart for chart in self.report.charts}
+        return {chart.name: chart for chart in self.report.all_charts}
 
     @property
     def tables(self) -> list[Table]:
-        """The tables of the report."""
-        sections = self.report.sections
+        """The tables of the report; not those that are shortened for terminals."""
         return [
-            block for section in sections for block in section.blocks if isinstance(block, Table)
+            block
+            for section in self.report.sections
+            if section.medium != "terminal"
+            for block in section.blocks
+            if isinstance(block, Table)
         ]
 
     @property
     def document(self) -> dict[str, Any]:
         """The finding as data in SI: what the command prints with `--json`."""
         return self.report.document
+
+    def plot(self, name: str | None = None) -> go.Figure:
+        """Return a chart of the report as a figure of plotly, by its name.
+
+        Parameters
+        ----------
+        name : str, optional
+            Name of the chart; by default the main one.
+
+        Raises
+        ------
+        InputError
+            If there is no chart of that name.
+        """
+        from vibroimpact.charts.notebook import plotly_figure
+
+        charts = self.charts
+        if not charts:
+            raise InputError("there are no charts, as nothing that they would show varies")
+        if name is None:
+            name = self.report.main_chart or next(iter(charts))
+        if name in charts:
+            return plotly_figure(charts[name])
+        further = self.report.further_charts
+        if name in further:
+            return plotly_figure(further[name]())
+        known = choices([*charts, *further], str(name))
+        raise InputError(f"there is no chart {quoted(name)}; there are {known}")
+
+    def _repr_html_(self) -> str | None:
+        from vibroimpact.report.html_report import html_report
+
+        return html_report(self.report)
+
+
+class Reported(WithReport):
+    """A finding of a task with its report, which is also saved as a folder."""
 
     def save(
         self,
@@ -83,18 +123,3 @@ class Reported:
         from vibroimpact.report.save_report import save_report
 
         return save_report(self.report, directory, force=force, figures=figures)
-
-    def plot(self, name: str = "") -> go.Figure:
-        """Return a chart of the report as a figure of plotly; the first one by default.
-
-        Raises
-        ------
-        InputError
-            If there is no chart of that name.
-        """
-        from vibroimpact.charts.notebook import plotly_figure
-
-        charts = self.charts
-        if name and name not in charts:
-            raise InputError(f"there is no chart {quoted(name)}; there are {choices(charts, name)}")
-        return plotly_figure(charts[name or next(iter(charts))])

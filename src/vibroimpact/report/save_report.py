@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from os import PathLike
 from pathlib import Path
 
-from vibroimpact.charts.figures_folder import write_figures
+from vibroimpact.charts.made import SCENE, warn_of_lost
+from vibroimpact.files.result_folder import (
+    FIGURES,
+    REPORT,
+    new_folder,
+    write_files,
+    write_summary,
+)
 from vibroimpact.report.page_of_report import page_of_report
 from vibroimpact.report.report import Report
-from vibroimpact.results.folder import REPORT, new_folder, write_summary
+
+ANIMATION = "plate.gif"
+"""The plate in motion, in the folder of the figures."""
 
 
 def save_report(
@@ -47,11 +56,79 @@ def save_report(
     ['report.html', 'summary.json']
     """
     with new_folder(directory, force=force) as folder:
-        for name, write in report.files.items():
-            path = folder / name
-            path.parent.mkdir(exist_ok=True)
-            write(path)
-        write_summary(report.summary, folder)
-        write_figures(report.charts, folder, figures)
-        (folder / REPORT).write_text(page_of_report(report), encoding="utf-8")
+        fill_folder(report, folder, figures)
     return Path(directory)
+
+
+def fill_folder(
+    report: Report,
+    folder: Path,
+    figures: Sequence[str] = (),
+    progress: Callable[[float], None] = lambda done: None,
+) -> None:
+    """Write the files of a report into an empty folder.
+
+    Parameters
+    ----------
+    report : Report
+        The report.
+    folder : pathlib.Path
+        The folder.
+    figures : sequence of str
+        As `save_report` takes them.
+    progress : callable, optional
+        Called with the part of the figures that is written, up to 1.
+    """
+    write_report(report, folder)
+    write_summary(report.summary, folder, report.checked_files)
+    if figures:
+        (folder / FIGURES).mkdir()
+        write_figures(report, folder / FIGURES, figures, progress)
+
+
+def write_report(report: Report, folder: Path) -> None:
+    """Write the page of a report, and its further files, into an existing folder."""
+    write_files(report.files, folder)
+    write_page(report, folder)
+
+
+def write_page(report: Report, folder: Path) -> None:
+    """Write the page of a report into an existing folder."""
+    (folder / REPORT).write_text(page_of_report(report), encoding="utf-8")
+
+
+def write_figures(
+    report: Report,
+    directory: Path,
+    formats: Sequence[str],
+    progress: Callable[[float], None] = lambda done: None,
+) -> None:
+    """Write the charts of a report into an existing directory, and what moves as `plate.gif`.
+
+    Parameters
+    ----------
+    report : Report
+        The report.
+    directory : pathlib.Path
+        The directory.
+    formats : sequence of str
+        Of "png", "svg" and "pdf".
+    progress : callable, optional
+        Called with the part of the charts that is written, up to 1.
+    """
+    from vibroimpact.charts.files import save_charts  # here, as it imports matplotlib
+
+    save_charts(report.all_charts, directory, formats, progress)
+    for scene in report.scenes:
+        if scene.animation is not None:
+            _write_animation(scene.animation, directory / ANIMATION)
+
+
+def _write_animation(animation: Callable[[], bytes], path: Path) -> None:
+    """Write an animation; one that can't be drawn is left out, with a `ChartWarning`."""
+    try:
+        content = animation()
+    except Exception as error:
+        warn_of_lost(SCENE, error)
+        return
+    path.write_bytes(content)

@@ -2,15 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from itertools import groupby
 
 from rich.columns import Columns
-from rich.console import Group, RenderableType
+from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
 from rich.text import Text
 
-from vibroimpact.report.report import Block, Code, Facts, Note, Paragraph, Report, Section, Table
-from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, facts, numbers
+from vibroimpact.report.report import (
+    Block,
+    Code,
+    Column,
+    Explanation,
+    Facts,
+    Heading,
+    Note,
+    Paragraph,
+    Report,
+    Section,
+    Table,
+)
+from vibroimpact.report.terminal_table import (
+    TerminalColumn,
+    TerminalTable,
+    facts,
+    numbers,
+    with_gap,
+)
 
 
 def terminal_report(report: Report) -> RenderableType:
@@ -38,17 +57,24 @@ def terminal_report(report: Report) -> RenderableType:
     if report.answer:
         lines.append(Text(report.answer))
     lines.extend(Text(sentence) for sentence in report.sentences)
-    for section in report.sections:
-        blocks = list(_section_lines(section))
-        if not blocks:
-            continue
-        # the table below the answer needs no heading
-        if not (section is report.sections[0] and isinstance(section.blocks[0], Table)):
-            lines.append(Text())
-            lines.append(Text(section.title, style="bold"))
+    sections = [section for section in report.sections if section.medium != "page"]
+    shown = [(section, blocks) for section in sections if (blocks := list(_section_lines(section)))]
+    for number, (section, blocks) in enumerate(shown):
+        lines.extend(_heading_lines(section, is_first=number == 0))
         lines.extend(blocks)
-    lines.extend(warning_lines(report.warnings))
+    lines.extend(warning_lines(report.all_warnings))
+    if report.all_warnings and report.warnings_note:
+        lines.append(Text(report.warnings_note, style="dim"))
     return Group(*lines)
+
+
+def _heading_lines(section: Section, *, is_first: bool) -> Iterator[Text]:
+    """Yield what sets a section apart; the table below the answer needs no heading."""
+    has_heading = section.title and not (is_first and isinstance(section.blocks[0], Table))
+    if has_heading or not is_first:
+        yield Text()
+    if has_heading:
+        yield Text(section.title, style="bold")
 
 
 def _section_lines(section: Section) -> Iterator[RenderableType]:
@@ -69,25 +95,62 @@ def _has_title(block: Block) -> bool:
 def block_lines(block: Block) -> Iterator[RenderableType]:
     """Yield what the terminal shows of a block."""
     if isinstance(block, Table):
-        if block.title:
-            yield Text(block.title, style="bold")
-        yield TerminalTable(
-            [
-                TerminalColumn(column.heading, column.cells, text=True)
-                if column.is_text
-                else numbers(column.heading, column.unit, column.cells)
-                for column in block.columns
-            ],
-            bold=block.bold,
-        )
+        table = block.short or block
+        if table.title:
+            yield Text(table.title, style="bold")
+        yield _FittedTable(table) if table.expendable else _terminal_table(table, table.columns)
     elif isinstance(block, Facts):
         yield facts(block.rows, indent=1)
+    elif isinstance(block, Heading):
+        yield Text(block.text, style="bold")
     elif isinstance(block, Paragraph):
         yield Text(block.text)
     elif isinstance(block, Code) and block.is_short:
         yield Text(f"{block.lead}\n{block.text}")
     elif isinstance(block, Note):
-        yield Text(f" {block.text}", style="dim")
+        yield Text(f" {block.text}", style="yellow" if block.is_warning else "dim")
+    elif isinstance(block, Explanation) and block.short:
+        yield Text(f" {block.short}", style="dim")
+
+
+@dataclass(frozen=True)
+class _FittedTable:
+    """A table without the columns that do not fit, and the notes on those that do."""
+
+    table: Table
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """Yield the table, and its notes."""
+        table = self.table
+        columns = list(table.columns)
+        for heading in table.expendable:
+            # the row of a gap is not wider than the cells beside it
+            if TerminalTable(_terminal_columns(columns)).width <= options.max_width:
+                break
+            columns = [column for column in columns if column.heading != heading]
+        yield _terminal_table(table, columns)
+        notes = [column.note for column in columns if column.note]
+        if len(columns) < len(table.columns):
+            notes.append(f"A wider terminal shows more columns; {table.file} has all, in SI units.")
+        for note in notes:
+            yield Text(f" {note}", style="dim")
+
+
+def _terminal_table(table: Table, columns: Sequence[Column]) -> TerminalTable:
+    """Return columns of a table for the terminal, with its gap."""
+    shown = _terminal_columns(columns)
+    if table.gap is not None:
+        shown = with_gap(shown, table.gap.row)
+    return TerminalTable(shown, bold=table.bold)
+
+
+def _terminal_columns(columns: Iterable[Column]) -> list[TerminalColumn]:
+    return [
+        TerminalColumn(column.heading, column.cells, text=True, least_width=column.least_width)
+        if column.is_text
+        else numbers(column.heading, column.unit, column.cells)
+        for column in columns
+    ]
 
 
 def warning_lines(warnings: Iterable[str]) -> list[RenderableType]:

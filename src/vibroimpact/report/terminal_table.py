@@ -39,11 +39,14 @@ class TerminalColumn:
     text : bool
         Text, left-aligned and wrapped; otherwise numbers, aligned at the decimal point and never
         wrapped.
+    least_width : int
+        Width of a terminal below which the column is left out.
     """
 
     heading: str
     cells: Sequence[str]
     text: bool = False
+    least_width: int = 0
 
 
 def numbers(heading: str, unit: str, cells: Sequence[str]) -> TerminalColumn:
@@ -88,6 +91,7 @@ class TerminalTable:
         columns = [
             TerminalColumn(shown(one.heading), [shown(cell) for cell in one.cells], one.text)
             for one in self.columns
+            if one.least_width <= options.max_width
         ]
         for line, style in self._lines(columns, options.max_width):
             yield Text(line.replace(_NO_BREAK, " "), style=style)

@@ -53,7 +53,7 @@ def _rows(impacts: dict[str, Any]) -> Iterator[dict[str, float | int | None]]:
         yield row
 
 
-def write_csv(rows: Iterable[dict[str, Any]], columns: list[str], path: Path) -> None:
+def write_csv(rows: Iterable[Mapping[str, Any]], columns: Sequence[str], path: Path) -> None:
     """Write rows as a CSV file with numbers in full precision; None becomes an empty cell."""
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, columns, lineterminator="\n")

@@ -1,22 +1,18 @@
-"""Result folders: atomic creation, writing of the data files, and reading with
-verification of checksums.
+"""The data files of the result folder of a run: writing, and reading with verification of
+checksums.
 """
 
 from __future__ import annotations
 
-import json
 import math
-import os
 import shlex
-from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Mapping
 from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
-import tomli_w
 
 from vibroimpact.dynamics.columns import (
     FIRST_IMPACT_COLUMNS,
@@ -27,32 +23,31 @@ from vibroimpact.dynamics.columns import (
     impact_columns,
 )
 from vibroimpact.errors import InputError
-from vibroimpact.files.atomic_write import atomic_folder
 from vibroimpact.files.check_sums import (
     CHECK_SUMS,
     DamageError,
     check_file,
-    file_digest,
     read_sealed,
-    sealed,
 )
 from vibroimpact.files.damaged_part import check_hdf5
 from vibroimpact.files.hdf5 import short_reason
-from vibroimpact.files.new_folders import made_folder
 from vibroimpact.files.recover import recover
+from vibroimpact.files.result_folder import (
+    CASE,
+    SUMMARY,
+    write_case,
+)
 from vibroimpact.files.toml_reading import read_toml
 from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.results.csv_files import write_impacts, write_signal_files
 from vibroimpact.results.netcdf import read_groups, write_groups
 from vibroimpact.results.result import Result
-from vibroimpact.results.summary import check_case, check_types, summary_of
+from vibroimpact.results.summary import check_case, check_types
 
-SUMMARY, CASE, NETCDF, REPORT = "summary.json", "case.toml", "result.nc", "report.html"
-
-LONGEST_FOLDER_NAME = 200
-"""In bytes; most file systems allow 255. This leaves room for what is appended, such as
-the format in the name of an export.
-"""
+IMPACTS = "impacts.csv"
+NETCDF = "result.nc"
+CHECKED_FILES = (CASE, NETCDF)
+"""Files of the result folder whose checksums its summary records."""
 
 _OTHER_FOLDERS = {
     "laws": "this is a comparison of contact laws, not the result of a run; make it anew with "
@@ -86,113 +81,20 @@ _OTHER_FOLDERS = {
 """
 
 
-@contextmanager
-def new_folder(directory: str | PathLike[str], *, force: bool = False) -> Iterator[Path]:
-    """Context manager of an atomic folder write: yield a temporary folder that becomes `directory`
-    when the block succeeds.
+def result_files(result: Result) -> dict[str, Callable[[Path], object]]:
+    """Return the data files of a result by their names, each with the function that writes it.
 
-    Parameters
-    ----------
-    directory : path
-        Final path of the folder.
-    force : bool, default False
-        Replace an existing result folder; nothing else is ever replaced.
-
-    Raises
-    ------
-    InputError
-        If the path exists and may not be replaced, or can't be written to.
+    These are `case.toml`, `impacts.csv`, `result.nc`, and the folder `sensors` with signals that
+    are not too long.
     """
-    target = Path(directory)
-    check_free(target, force=force)
-    with ExitStack() as stack:
-        try:
-            stack.enter_context(made_folder(target.parent))
-            working = stack.enter_context(
-                atomic_folder(target, partial(check_free, target, force=force))
-            )
-        except OSError as error:
-            raise InputError(f"{target}: the folder can't be made: {error.strerror}") from None
-        yield working
-
-
-def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
-    """Check that a result folder may be written to `directory`, after recovering from an
-    interrupted write to it.
-
-    Raises
-    ------
-    InputError
-        If the path is not valid, exists and may not be replaced, or lies where nothing can be
-        written.
-    """
-    target = Path(directory)
-    if "\0" in str(target):
-        raise InputError(f"{target}: a path can't have the character NUL")
-    if len(os.fsencode(target.name)) > LONGEST_FOLDER_NAME:
-        raise InputError(
-            f"{target}: the name of a folder may have {LONGEST_FOLDER_NAME} bytes at most; "
-            "letters beyond ASCII take several"
-        )
-    if target.absolute() == Path(target.absolute().anchor):
-        raise InputError(f"{target}: this is the root of the file system; name a folder inside it")
-    recover(target)
-    if target.resolve() == Path.cwd():
-        raise InputError(f"{target}: this is the current folder; name one inside it")
-    above = next(folder for folder in target.absolute().parents if folder.exists())
-    if not os.access(above, os.W_OK):
-        raise InputError(
-            f"{target}: {above} can't be written to; name another place for the result"
-        )
-    if not os.path.lexists(target):
-        return
-    if not target.is_dir():
-        raise InputError(f"{target}: this is not a folder; name another place for the result")
-    is_result = (target / SUMMARY).is_file()
-    if (force and is_result) or not any(target.iterdir()):
-        return
-    if not is_result:
-        raise InputError(
-            f"{target}: the folder is there and is not a result folder, so --force does "
-            "not replace it; name another one"
-        )
-    raise InputError(
-        f"{target}: the folder is there already; name another one, or replace it with --force"
-    )
-
-
-def write_summary(summary: Mapping[str, Any], folder: Path) -> None:
-    """Write `summary.json` of a folder other than that of a run or a study, whose
-    summaries have checksums.
-    """
-    (folder / SUMMARY).write_text(
-        json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8"
-    )
-
-
-def write_case(case: Mapping[str, Any], path: Path) -> None:
-    """Write a resolved case as a file that can be run."""
-    path.write_text(tomli_w.dumps(case), encoding="utf-8")
-
-
-def write_result(result: Result, directory: Path) -> None:
-    """Write the data files of a result into an existing folder.
-
-    These are `case.toml`, `impacts.csv`, `result.nc`, `summary.json` with the checksums of the
-    first and third, and `sensors/*.csv` for signals that are not too long.
-    """
+    files: dict[str, Callable[[Path], object]] = {}
     # a problem defined in Python has no case; its provenance holds its representation
     if result.case:
-        write_case(result.case, directory / CASE)
-    write_impacts(result.impacts, directory / "impacts.csv")
-    write_groups(result, directory / NETCDF)
-    check_sums = {
-        name: file_digest(directory / name)
-        for name in (CASE, NETCDF)
-        if (directory / name).is_file()
-    }
-    (directory / SUMMARY).write_bytes(sealed({**summary_of(result), CHECK_SUMS: check_sums}))
-    write_signal_files(result.signals, directory / "sensors")
+        files[CASE] = partial(write_case, result.case)
+    files[IMPACTS] = partial(write_impacts, result.impacts)
+    files[NETCDF] = partial(write_groups, result)
+    files["sensors"] = partial(write_signal_files, result.signals)
+    return files
 
 
 def load_result(directory: str | PathLike[str]) -> Result:
@@ -201,7 +103,7 @@ def load_result(directory: str | PathLike[str]) -> Result:
     Parameters
     ----------
     directory : path
-        Result folder, as written by `save_result` or `vibroimpact run`.
+        Result folder, as written by `Response.save` or `vibroimpact run`.
 
     Returns
     -------
@@ -215,16 +117,14 @@ def load_result(directory: str | PathLike[str]) -> Result:
 
     See Also
     --------
-    vibroimpact.save_result : writes one.
+    vibroimpact.Response.save : writes one.
 
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
     >>> with TemporaryDirectory() as folder:
-    ...     place = vi.save_result(
-    ...         vi.simulate(vi.load_case("paper:type1-theory")), f"{folder}/theory"
-    ...     )
+    ...     place = vi.simulate(vi.load_case("paper:type1-theory")).save(f"{folder}/theory")
     ...     vi.load_result(place).impacts["rebound_height_m"].round(4).tolist()
     [2.4111, 1.4572, 0.8846, 0.5409, 0.3346]
     """

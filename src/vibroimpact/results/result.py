@@ -7,7 +7,6 @@ import platform
 from collections.abc import Container, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,18 +21,21 @@ from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE, change_by_imp
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.truncation import time_of_contact
+from vibroimpact.report.html_report import html_summary
+from vibroimpact.report.reported import Reported
 from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.results.deflection import Deflection, deflection_of
 from vibroimpact.results.fine_history import fine_history
 from vibroimpact.results.peaks import Peaks, peaks_of
 
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
-
 
 @dataclass(frozen=True)
-class Result:
+class Result(Reported, reported_in="vibroimpact.runs.report"):
     """Result of one drop; its last five fields are empty where nothing but the contact deforms.
+
+    Its charts, which `plot` draws by their names, are "setup", "position", "force", "velocity",
+    "acceleration", "force_indentation" and "energy"; where bodies vibrate also "sphere_energy",
+    "plate_motion", "plate_energy", "deflection", and "sensor NAME" for each sensor.
 
     Parameters
     ----------
@@ -173,16 +175,8 @@ class Result:
         """Name of the case; "a drop" if it has none."""
         return str(self.case.get("name", "")) or "a drop"
 
-    def plot(self, name: str = "position") -> go.Figure:
-        """Return a chart as a figure of plotly, by its name; see `vibroimpact.plot_result`."""
-        import vibroimpact  # an import upwards, as in Response.save: charts lie above results
-
-        return vibroimpact.plot_result(self, name)
-
     def _repr_html_(self) -> str:
-        import vibroimpact
-
-        return vibroimpact.result_html(self)
+        return html_summary(self.report)
 
 
 def result_of(response: Response) -> Result:

@@ -247,7 +247,7 @@ def _motion_rows(case: Case) -> list[tuple[str, str]]:
 def _elastic_rows(case: Case) -> list[tuple[str, str]]:
     if not elastic_names(case):
         return []
-    from vibroimpact.modes.text import elastic_rows  # here, as it imports scipy.sparse
+    from vibroimpact.modes.elastic_rows import elastic_rows  # here, as it imports scipy.sparse
 
     return elastic_rows(case)
 

@@ -92,7 +92,7 @@ def run_charts(result: Result) -> list[Chart]:
     Returns
     -------
     list of Chart
-        `position`, `force` and `velocity` first, and those that `plot_result` names.
+        `position`, `force` and `velocity` first.
 
     Examples
     --------

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalModel
 
 
+PARAVIEW = "paraview"
+"""Name of the folder of these files, inside a result folder."""
 _FRAMES = 40
 """Number of frames, at most."""
 _MOST_BYTES = 40e6
@@ -28,9 +30,8 @@ they lie in the processor's cache.
 """
 
 
-def write_paraview(response: Response, directory: Path) -> None:
-    """Write `plate.pvd` and `sphere.pvd` with their data files into the folder `paraview` of a
-    directory.
+def write_paraview(response: Response, folder: Path) -> None:
+    """Write `plate.pvd` and `sphere.pvd` with their data files into a new folder.
 
     Both use the coordinates of the plate. `displacement_m` is relative to the configuration in
     which the plate is at rest and the sphere just touches it; `deformation_m`, of the sphere only,
@@ -41,8 +42,8 @@ def write_paraview(response: Response, directory: Path) -> None:
     ----------
     response : Response
         Response of one drop.
-    directory : pathlib.Path
-        Existing directory.
+    folder : pathlib.Path
+        The folder to make.
     """
     models = response.problem.models
     if not models:
@@ -60,7 +61,7 @@ def write_paraview(response: Response, directory: Path) -> None:
     if count < 2:
         return
     times = times[np.unique(np.linspace(0, len(times) - 1, count).round().astype(int))]
-    folder, modal = directory / "paraview", response.modal(times)
+    modal = response.modal(times)
     folder.mkdir()
     if "plate" in models:
         plate = models["plate"]

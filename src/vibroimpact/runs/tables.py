@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +23,8 @@ from vibroimpact.dynamics.columns import (
     SHOWN_IMPACT_COLUMNS,
     VIBRATION_LEDGER,
 )
+from vibroimpact.report.report import Column, Gap, Table, table_of
+from vibroimpact.results.folder import IMPACTS
 from vibroimpact.results.result import Result
 from vibroimpact.units.display import (
     ALL_FIGURES,
@@ -33,8 +36,26 @@ from vibroimpact.units.display import (
     multiple,
 )
 
-_MOST_ROWS, _FIRST, _LAST = 50, 45, 3
+_MOST_ROWS = 50
+_FIRST_ROWS = 45
+_LAST_ROWS = 3
 """A table of more rows shows only its first 45 and last three."""
+
+_FIRST_IN_TERMINAL = 15
+"""In a terminal it shows its first 15 and last three."""
+
+_FIRST_LEFT_OUT = (
+    "max_acceleration_m_s2",
+    "energy_lost_J",
+    "separation_speed_m_s",
+    "restitution_asked",
+    "max_indentation_m",
+    "contacts",
+    "rebound_height_m",
+    "duration_s",
+    "approach_speed_m_s",
+)
+"""Columns left out in a narrow terminal, in this order, until the others fit."""
 
 _FIGURES_SHOWN = 6  # significant figures in a table
 _DIGITS = 5
@@ -48,17 +69,6 @@ _SLOW = 0.1
 SUM, PUT_IN = "Sum", "Put in at the start"
 
 
-class ImpactTable(NamedTuple):
-    """Impact table as text: headers with units, the rows of `head` and `tail`, and the
-    number of rows left out between them.
-    """
-
-    headers: list[tuple[str, str]]
-    head: list[list[str]]
-    left_out: int
-    tail: list[list[str]]
-
-
 class LedgerRow(NamedTuple):
     """Row of the ledger as text: name of the entry, title, energy, and percentage of the
     energy put in.
@@ -70,21 +80,64 @@ class LedgerRow(NamedTuple):
     part: str
 
 
-def impact_table(result: Result) -> ImpactTable:
-    """Return the impact table of the report, in suitable multiples of SI units; a long
-    one without its middle rows.
+def impact_table(result: Result) -> Table:
+    """Return the impact table of the report, in suitable multiples of SI units.
+
+    A long one lacks its middle rows; that of the terminal is shorter.
     """
-    change = result.change_by_impact
-    shown = shown_columns(result)
-    columns = [formatted_column(name, result.impacts[name], change) for name in shown]
-    headers = [
-        (ALL_IMPACT_COLUMNS[name].label, unit)
-        for name, (unit, _) in zip(shown, columns, strict=True)
-    ]
-    rows = [list(row) for row in zip(*(cells for _, cells in columns), strict=True)]
-    if len(rows) <= _MOST_ROWS:
-        return ImpactTable(headers, rows, 0, [])
-    return ImpactTable(headers, rows[:_FIRST], len(rows) - _FIRST - _LAST, rows[-_LAST:])
+    number = len(result.impacts["impact"])
+    columns = {
+        name: formatted_column(name, result.impacts[name], result.change_by_impact)
+        for name in shown_columns(result)
+    }
+    headings = {name: ALL_IMPACT_COLUMNS[name].label for name in columns}
+    rows, gap = _rows_shown(number, _MOST_ROWS, _FIRST_ROWS)
+    return Table(
+        [
+            Column(headings[name], [cells[row] for row in rows], unit)
+            for name, (unit, cells) in columns.items()
+        ],
+        gap=gap,
+        file=IMPACTS,
+        shows_views=True,
+        short=_table_for_terminal(result, columns),
+    )
+
+
+def _rows_shown(number: int, most: int, first: int) -> tuple[list[int], Gap | None]:
+    """Return the rows that are shown of a table: all, or the first and the last ones."""
+    if number <= most:
+        return list(range(number)), None
+    rows = [*range(first), *range(number - _LAST_ROWS, number)]
+    return rows, Gap(first, number - len(rows))
+
+
+def _table_for_terminal(result: Result, columns: Mapping[str, tuple[str, list[str]]]) -> Table:
+    """Return the impact table of the terminal, from the unit and the cells of each column."""
+    most = _FIRST_IN_TERMINAL + _LAST_ROWS
+    rows, gap = _rows_shown(len(result.impacts["impact"]), most, _FIRST_IN_TERMINAL)
+    notes = {}
+    if "energy_to_vibration_J" in result.impacts:
+        notes["energy_lost_J"] = energy_lost_sentence(result)
+    headings = {name: ALL_IMPACT_COLUMNS[name].short for name in columns}
+    return Table(
+        [
+            Column(headings[name], [cells[row] for row in rows], unit, note=notes.get(name, ""))
+            for name, (unit, cells) in columns.items()
+        ],
+        gap=gap,
+        file=IMPACTS,
+        expendable=[headings[name] for name in _FIRST_LEFT_OUT if name in headings],
+    )
+
+
+def energy_lost_sentence(result: Result) -> str:
+    """Return a sentence on what the energy lost in an impact is."""
+    friction = "friction and " if "friction_J" in result.energy else ""
+    return (
+        f"Energy lost is the energy dissipated in the contact, without {friction}the energy of "
+        "vibration."
+    )
 
 
 def shown_columns(result: Result) -> list[str]:
@@ -150,6 +203,27 @@ def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
         title = LEDGER_COLUMNS[name].label if name in LEDGER_COLUMNS else name
         rows.append(LedgerRow(name, title, energy, part))
     return scale.unit, rows
+
+
+def energy_table(result: Result) -> Table:
+    """Return the final ledger as a table; that of the terminal has short names and no sum."""
+    unit, ledger = ledger_table(result)
+    entries = [row for row in ledger if row.name != SUM]
+    short_names = [
+        "put in" if row.name == PUT_IN else row.name.removesuffix("_J").replace("_", " ")
+        for row in entries
+    ]
+    short = table_of(
+        ["entry", ("", unit), "%"],
+        [[name, row.energy, row.part] for name, row in zip(short_names, entries, strict=True)],
+        bold=(len(entries) - 1,),
+    )
+    table = table_of(
+        ["Entry", ("Energy", unit), ("Part of the input", "%")],
+        [[row.title, row.energy, row.part] for row in ledger],
+        bold=[number for number, row in enumerate(ledger) if row.name == SUM],
+    )
+    return replace(table, short=short)
 
 
 def energy_text(result: Result, *entries: str) -> str:

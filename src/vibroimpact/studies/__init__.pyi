@@ -1,8 +1,5 @@
 """The public names of the module, for its loader and for type checkers."""
 
-from .report.charts import study_charts as study_charts
-from .report.notebook import plot_study as plot_study
-from .report.notebook import study_html as study_html
 from .run_sweep import run_sweep as run_sweep
 from .study import Study as Study
 from .study import load_study as load_study

@@ -18,7 +18,7 @@ from vibroimpact.cases.elastic.coupling import carried_modes
 from vibroimpact.cases.rigid_problem import impact_limit
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.files.check_sums import sealed
-from vibroimpact.results.folder import SUMMARY, new_folder
+from vibroimpact.files.result_folder import SUMMARY, new_folder
 from vibroimpact.structures.store import receive
 from vibroimpact.studies.chunk_file import FOLDER, ChunkResult, checksum, read_chunk, write_chunk
 from vibroimpact.studies.compute_points import compute_points

@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 
 from vibroimpact.studies.compute_study import MEMORY, compute_study
-from vibroimpact.studies.report.page import write_study_report
+from vibroimpact.studies.report.write_report import write_study_report
 from vibroimpact.studies.study import load_study
 from vibroimpact.studies.sweep import Sweep
 
@@ -96,5 +96,5 @@ def run_sweep(
     )
     if progress is not None:
         progress(sweep.size, sweep.size)  # lets the callback interrupt before the report
-    write_study_report(load_study(folder), folder)
+    write_study_report(load_study(folder))
     return folder

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from math import prod
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -21,13 +21,11 @@ from vibroimpact.files.check_sums import DamageError, recorded_digest
 from vibroimpact.files.damaged_part import check_hdf5
 from vibroimpact.files.hdf5 import members, read_array, short_reason
 from vibroimpact.files.toml_reading import parse_toml
+from vibroimpact.report.reported import WithReport
 from vibroimpact.studies.drop_variables import DOUBTS, LIMIT, SIGNAL
 from vibroimpact.studies.plan import SAMPLE
 from vibroimpact.studies.population import LABELS
 from vibroimpact.studies.study_folder import DATASET, STUDY, recover_study, swept_keys
-
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
 
 FAILED_POINT = "failed_point"
 """The variable with the numbers of failed drops."""
@@ -58,8 +56,10 @@ class StudyDoubt(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Study:
+class Study(WithReport, reported_in="vibroimpact.studies.report.report"):
     """A completed study; its variables are read on demand.
+
+    Its folder has its report already: `remake_report` writes that anew.
 
     Attributes
     ----------
@@ -152,21 +152,6 @@ class Study:
     def __repr__(self) -> str:
         lengths = ", ".join(f"{name} {length}" for name, length in self.dimensions.items())
         return f"<Study of {self.size} drop{'' if self.size == 1 else 's'}: {lengths}>"
-
-    def _repr_html_(self) -> str:
-        # an import upwards, as in Response.save: tables and charts lie above the study
-        import vibroimpact
-
-        return vibroimpact.studies.study_html(self)
-
-    def plot(self, name: str = "") -> go.Figure:
-        """Return a chart as a figure of plotly, by its name; see `vibroimpact.studies.plot_study`.
-
-        By default it is the first chart.
-        """
-        import vibroimpact
-
-        return vibroimpact.studies.plot_study(self, name)
 
     def times(self, sensor: str) -> Floats:
         """Return the time of each sample in the signal of a sensor [s].

@@ -19,7 +19,7 @@ from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.files.atomic_write import atomic_file, write_file
 from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, sealed
 from vibroimpact.files.hdf5 import CHECKED, chunk_shape, new_array, new_hdf5
-from vibroimpact.results.folder import SUMMARY
+from vibroimpact.files.result_folder import SUMMARY
 from vibroimpact.studies.chunk_file import chunk_layout, read_chunk
 from vibroimpact.studies.drop_variables import DOUBTS, LIMIT, OUTCOME, SIGNAL
 from vibroimpact.studies.ledger import Span

@@ -11,10 +11,10 @@ import numpy as np
 from vibroimpact._version import __version__
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.files.plain_names import plain_names
+from vibroimpact.files.result_folder import CASE, write_case
 from vibroimpact.quoting import visible
 from vibroimpact.report.report import Explanation, Report, Section, Table, table_of
 from vibroimpact.results.csv_files import write_columns
-from vibroimpact.results.folder import CASE, write_case
 from vibroimpact.test_analysis.charts import correlation_charts, what_frac_is_of
 from vibroimpact.test_analysis.correlate import Correlation
 from vibroimpact.test_analysis.criteria_tables import (

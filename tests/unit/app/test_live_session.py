@@ -233,7 +233,8 @@ def test_cancel_does_not_wait_for_a_report(monkeypatch: pytest.MonkeyPatch) -> N
             time.sleep(0.01)
         return state_of(table, "full", lambda what, part: None)
 
-    monkeypatch.setattr(sessions, "run_page", slow)
+    monkeypatch.setattr(sessions, "report_of", lambda result: result)
+    monkeypatch.setattr(sessions, "page_of_report", slow)
     monkeypatch.setattr(sessions, "state_of", long_second)
 
     async def talk(session: Session, heard: list[dict[str, Any]]) -> None:
@@ -259,7 +260,7 @@ def test_a_report_that_fails_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     def fails(result: Any) -> str:
         raise ZeroDivisionError("by nothing")
 
-    monkeypatch.setattr(sessions, "run_page", fails)
+    monkeypatch.setattr(sessions, "report_of", fails)
 
     async def talk(session: Session, heard: list[dict[str, Any]]) -> None:
         await session.receive(case(1, RIGID))

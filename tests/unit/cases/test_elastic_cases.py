@@ -292,15 +292,19 @@ import sys
 from pathlib import Path
 import vibroimpact as vi
 from vibroimpact.cases.costs import describe_costs
-from vibroimpact.results.folder import write_result
+from vibroimpact.files.result_folder import write_files, write_summary
+from vibroimpact.results.folder import CHECKED_FILES, result_files
 from vibroimpact.results.result import result_of
+from vibroimpact.results.summary import summary_of
 from vibroimpact.runs.paraview import write_paraview
 
 case, folder = vi.load_case(sys.argv[1]), Path(sys.argv[2])
 describe_costs(case)
 response = vi.simulate(case)
-write_result(result_of(response), folder)
-write_paraview(response, folder)
+result = result_of(response)
+write_files(result_files(result), folder)
+write_summary(summary_of(result), folder, CHECKED_FILES)
+write_paraview(response, folder / "paraview")
 print(*sys.modules)
 """
 
@@ -603,7 +607,7 @@ def test_the_meshes_written_are_those_of_the_modes(tmp_path: Path) -> None:
     """A solid plate written for Nastran, and brought back, has the same frequencies."""
     case = vi.case_of(plate_case(element="solid", mesh={"element_size": 0.2}))
     modes = vi.compute_modes(case)
-    vi.save_modes(case, modes, tmp_path / "out")
+    modes.save(tmp_path / "out")
     for name in ("plate.bdf", "plate.inp"):
         brought = vi.case_of(plate_case(mesh=str(tmp_path / "out" / name)))
         again = vi.compute_modes(brought)["plate"]

@@ -25,9 +25,9 @@ from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.limit import limits, numbers_of
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
+from vibroimpact.report.terminal_report import terminal_report
 from vibroimpact.results.result import result_of
 from vibroimpact.studies.compute_study import compute_study
-from vibroimpact.studies.report.text import study_summary
 from vibroimpact.units.reading import to_si
 
 STEEL = {"density": 7850, "youngs_modulus": 2.1e11, "poissons_ratio": 0.3, "yield_strength": 1e12}
@@ -507,7 +507,7 @@ def test_a_study_says_how_many_drops_which_and_the_worst(tmp_path: Path) -> None
     )
     console = Console(width=200)
     with console.capture() as printed:
-        console.print(study_summary(study, 200))
+        console.print(terminal_report(study.report))
     page = (study.path.parent / "report.html").read_text(encoding="utf-8").replace("\u00a0", " ")
     assert said in printed.get().replace("\u00a0", " ")
     assert said in page

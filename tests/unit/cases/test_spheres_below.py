@@ -166,7 +166,7 @@ def test_its_radius_can_be_swept(supports: dict[str, str], tmp_path: Path) -> No
 
 
 def test_it_is_not_exported(tmp_path: Path) -> None:
-    folder = vi.save_result(vi.simulate(case_of({"radius": 0.02})), tmp_path / "run")
+    folder = vi.simulate(case_of({"radius": 0.02})).save(tmp_path / "run")
     with pytest.raises(
         vi.InputError,
         match=r"plate.radius: only a drop on a flat plate can be exported, and this sphere",

@@ -21,8 +21,8 @@ from vibroimpact.charts.files import save_charts
 from vibroimpact.charts.marks import Points
 from vibroimpact.cli import main
 from vibroimpact.report.page import replace_report_files
+from vibroimpact.report.save_report import write_figures
 from vibroimpact.results.result import result_of
-from vibroimpact.runs.figures import write_figures
 
 RIGID = {"setup", "position", "force", "velocity", "acceleration", "force_indentation", "energy"}
 ELASTIC = RIGID | {"sphere_energy", "plate_motion", "plate_energy", "deflection", "sensor_a_1"}
@@ -147,7 +147,7 @@ def test_those_of_a_run_are_those_of_its_folder(tmp_path: Path) -> None:
     response = vi.simulate(vi.case_of(elastic(sensors=[sensor("a 1")])))
     response.save(tmp_path / "out")
     (tmp_path / "figures").mkdir()
-    write_figures(result_of(response), tmp_path / "figures")
+    write_figures(result_of(response).report, tmp_path / "figures", ["png"])
     again = vi.save_figures(tmp_path / "out", output=tmp_path / "again")
     for path in again.iterdir():
         assert path.read_bytes() == (tmp_path / "figures" / path.name).read_bytes(), path.name
@@ -202,7 +202,7 @@ def test_a_failure_leaves_what_was_there(
     def breaks(*_: object) -> None:
         raise OSError("no space left on device")
 
-    monkeypatch.setattr("vibroimpact.runs.figures.save_charts", breaks)
+    monkeypatch.setattr("vibroimpact.charts.files.save_charts", breaks)
     with pytest.raises(vi.InputError, match="can't be written"):
         vi.save_figures(copy)
     assert {path.name: path.read_bytes() for path in (copy / "figures").iterdir()} == {

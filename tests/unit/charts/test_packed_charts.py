@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 
 from vibroimpact.charts.axis import Axis, View
-from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.chart import Chart, Panel, stored_chart
 from vibroimpact.charts.marks import Bars, Line, Map, Outline, Points
 from vibroimpact.charts.pack import pack, unpack
 from vibroimpact.charts.plotly import plotly_chart
-from vibroimpact.report.page import render_drawn_page, render_page
+from vibroimpact.report.page_of_report import page_of_report
+from vibroimpact.report.report import Figure, Paragraph, Report, Section
 
 
 def same(one: Any, other: Any) -> bool:
@@ -134,11 +135,13 @@ def data_of(page: str) -> dict[str, Any]:
 
 def test_a_page_of_packed_charts_is_that_of_the_charts() -> None:
     chart = some_chart()
-    values = {"name": "name", "opening": "", "pieces": [("<p>before</p>", "some")]}
-    direct = render_page("vibroimpact.paper.report", [chart], **values)
-    packed = render_drawn_page(
-        "vibroimpact.paper.report", [unpack(pack(plotly_chart(chart)))], **values
-    )
+
+    def page_of(shown: Chart) -> str:
+        section = Section("section", "Section", (Paragraph("before"), Figure(shown)))
+        return page_of_report(Report("name", (section,), {}))
+
+    direct = page_of(chart)
+    packed = page_of(stored_chart(unpack(pack(plotly_chart(chart)))))
     assert same(data_of(direct), data_of(packed))
     head, before, data = (
         '<option value="0">Impact 1</option>',

@@ -23,9 +23,9 @@ from support import one_in
 from vibroimpact.charts.chart import Panel, values_on
 from vibroimpact.charts.files import save_charts
 from vibroimpact.charts.marks import Label, Line, Outline, Points
+from vibroimpact.report.page_of_report import page_of_report
 from vibroimpact.runs import chart_data
 from vibroimpact.runs.charts import run_charts
-from vibroimpact.runs.page import run_page
 from vibroimpact.runs.setup import setup_chart, setup_rows
 from vibroimpact.runs.tables import impact_table
 
@@ -35,7 +35,7 @@ pytestmark = pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("name", RUNS)
 def test_a_run_of_every_kind_has_a_page(name: str) -> None:
     result = run_of(name)
-    page = Page(run_page(result))
+    page = Page(page_of_report(result.report))
     assert result.status in page.text
     data = page.data()
     names = [chart["name"] for chart in data["charts"]]
@@ -52,7 +52,7 @@ def test_a_run_of_every_kind_has_a_page(name: str) -> None:
     (drawn,) = (trace for trace in traces if len(trace["y"]) == len(result.history["time_s"]))
     np.testing.assert_allclose(drawn["y"], result.history["position_m"], rtol=1e-6)
     np.testing.assert_allclose(drawn["x"], result.history["time_s"], rtol=1e-6, atol=1e-12)
-    for cells in impact_table(result).head:
+    for cells in impact_table(result).rows:
         assert all(cell in page.text for cell in cells)
 
 
@@ -68,7 +68,7 @@ def test_the_charts_of_every_kind_are_drawn_for_print(
 
 
 def test_what_runs_in_a_page_is_what_its_policy_allows() -> None:
-    text = run_page(run_of("sensors"))
+    text = page_of_report(run_of("sensors").report)
     page = Page(text)
     policy = next(
         value
@@ -93,7 +93,7 @@ def test_what_runs_in_a_page_is_what_its_policy_allows() -> None:
 
 
 def test_names_that_are_scripts_are_shown_as_text() -> None:
-    text = run_page(run_of("hostile names"))
+    text = page_of_report(run_of("hostile names").report)
     page = Page(text)
     assert HOSTILE not in text
     assert "alert(1)</script>" not in text
@@ -182,7 +182,7 @@ def test_supports_of_every_kind_are_drawn_below_the_plate_and_on_it(
     }
     assert told.get(name, "") in words
     save_charts([chart], tmp_path)
-    assert run_page(result)
+    assert page_of_report(result.report)
 
 
 def words_of(panel: Panel) -> list[str]:
@@ -237,7 +237,7 @@ def test_a_very_long_run_is_drawn_whole_with_its_first_contacts_in_full(
     assert set(result.history["time_s"][first]) <= set(drawn["time_s"])
     charts = {chart.name: chart for chart in run_charts(result)}
     assert len(charts["force"].views) == 60
-    assert Page(run_page(result)).text
+    assert Page(page_of_report(result.report)).text
 
 
 def test_charts_over_time_share_their_range() -> None:

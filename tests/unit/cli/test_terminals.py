@@ -34,17 +34,16 @@ from vibroimpact.exporting.export_format import find_export_format
 from vibroimpact.exporting.text import export_summary, format_table
 from vibroimpact.law_comparison.comparison import compare_laws
 from vibroimpact.law_sheets.sheet import law_sheet, law_table
-from vibroimpact.modes.text import modes_summary
-from vibroimpact.paper.report.page import kind_summary, verdict_table
+from vibroimpact.paper.report.outline import RenderedPart
+from vibroimpact.paper.report.reproduction import Reproduction
 from vibroimpact.paper.report_section import Verdict
 from vibroimpact.report.console import TerminalConsole
 from vibroimpact.report.terminal_report import terminal_report
+from vibroimpact.report.terminal_table import facts
 from vibroimpact.results.result import result_of
 from vibroimpact.runs.case_explained import case_explained
-from vibroimpact.runs.text import result_summary, versions_table
 from vibroimpact.studies.compute_study import compute_study
 from vibroimpact.studies.explain_sweep import explain_sweep
-from vibroimpact.studies.report.text import study_summary
 from vibroimpact.studies.sweep_file import sweep_of
 
 _NUMBER = re.compile(
@@ -99,14 +98,14 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
     recognition = vi.recognition.recognise(knocks, folds=2, seeds=1)
     recognised = vi.recognition.apply_recogniser(recognition.recogniser, knocks)
     return {
-        "run": lambda width: result_summary(rigid, width),
-        "run, elastic": lambda width: result_summary(rung, width),
+        "run": lambda width: terminal_report(rigid.report),
+        "run, elastic": lambda width: terminal_report(rung.report),
         "check": lambda _: case_explained(elastic),
         "check, study": lambda _: explain_sweep(sweep),
         "compare": lambda _: terminal_report(compared.report),
         "calibrate": lambda _: terminal_report(calibrated.report),
-        "modes": lambda _: modes_summary(elastic, modes),
-        "sweep": lambda width: study_summary(study, width),
+        "modes": lambda _: terminal_report(modes.report),
+        "sweep": lambda _: terminal_report(study.report),
         "dataset": lambda _: explain_sweep(population),
         "bound": lambda _: terminal_report(bound_of(population).report),
         "export": lambda _: format_table(),
@@ -124,7 +123,7 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "materials NAME": lambda _: material_sheet("granite"),
         "units": lambda _: unit_table(5.115e8, "N/m^1.5"),
         "units --to": lambda _: unit_conversion(3.0, "N/µm", "N/m"),
-        "doctor": lambda _: versions_table(
+        "doctor": lambda _: facts(
             [row for row in diagnosis_rows(diagnose()) if row[0] not in CHANGING]
         ),
     }
@@ -214,20 +213,19 @@ def test_every_command_is_readable_in_every_encoding(
 
 
 def test_verdicts_of_the_reproduction_fit() -> None:
-    rows = {
-        "rows": [{"verdict": verdict.value, "kind": "fitted model"} for verdict in Verdict] * 30,
-        "title": "",
-        "text": "",
-    }
+    value = {"kind": "fitted model", "printed": "1", "range_low": 0.0, "range_high": 1.0}
+    rows = [{**value, "verdict": verdict.value} for verdict in Verdict] * 30
+    part = RenderedPart("", "", rows, None)
+    report = Reproduction(Path(), {"table1": part, "section5.2": part}).report
     for width in (40, 60):
-        lines = shown(verdict_table({"table1": rows, "section5.2": rows}), width)
+        lines = shown(terminal_report(report), width)
         assert max(map(len, lines)) <= width
-        assert {*_NUMBER.findall(" ".join(lines))} == {"30", "60"}
-        lines = shown(kind_summary({"table1": rows}), width)
-        assert max(map(len, lines)) <= width
-        found = _NUMBER.findall(" ".join(lines))
-        # and the 2 of "Type 2"
-        assert (found.count("0"), found.count("30"), len(found)) == (16, 4, 21)
+        numbers = _NUMBER.findall(" ".join(lines))
+        # by part, by kind, and the 2 of "Type 2"
+        assert numbers.count("30") == 2 * 4
+        assert numbers.count("60") == 4 + 4
+        assert numbers.count("0") == 4 * 4
+        assert {*numbers} == {"0", "30", "60", "2"}
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252", "utf-8"])

@@ -17,11 +17,11 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.conditions import DropSummary
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.contact.laws.hertz import Hertz
+from vibroimpact.report.terminal_report import terminal_report
 from vibroimpact.results.result import Result, result_of
 from vibroimpact.results.summary import summary_of
 from vibroimpact.runs.history_charts import ACCELERATION, FORCE, POSITION, VELOCITY
 from vibroimpact.runs.tables import impact_table
-from vibroimpact.runs.text import result_summary
 
 CHANGES = np.array([1e-9, 2e-3, 0.1, 10.0])
 
@@ -42,9 +42,12 @@ def undamped() -> Result:
 
 
 def printed(result: Result, width: int = 140) -> list[list[str]]:
+    """Return the words of the name and of the lines from the head of the table on."""
     written = StringIO()
-    Console(width=width, file=written).print(result_summary(result, width))
-    return [line.split() for line in written.getvalue().splitlines()]
+    Console(width=width, file=written).print(terminal_report(result.report))
+    lines = [line.split() for line in written.getvalue().splitlines()]
+    units = next(number for number, line in enumerate(lines) if line[:1] == ["#"])
+    return [lines[0], *lines[units - 1 :]]
 
 
 def test_the_terminal_prints_only_digits_that_are_there(undamped: Result) -> None:
@@ -61,7 +64,8 @@ def test_the_terminal_prints_only_digits_that_are_there(undamped: Result) -> Non
 
 
 def test_the_page_prints_only_digits_that_are_there(undamped: Result) -> None:
-    headers, rows, *_ = impact_table(undamped)
+    table = impact_table(undamped)
+    headers, rows = table.headings, table.rows
     force, time = (
         next(place for place, (name, _) in enumerate(headers) if name == wanted)
         for wanted in ("Largest force", "First touch")

@@ -34,8 +34,8 @@ from vibroimpact.exporting.formats.matlab import legal_names
 from vibroimpact.exporting.formats.uff58 import history_rate
 from vibroimpact.exporting.load_drop import drop_of_result, load_drop
 from vibroimpact.exporting.resample import motion_at
-from vibroimpact.results.folder import write_result
 from vibroimpact.results.result import result_of
+from written_results import write_result
 
 ELASTIC = {
     "name": "elastic",

@@ -202,7 +202,7 @@ def test_no_folder_is_left_where_nothing_could_be_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of a run, its figures and its export, and of a folder that was there already."""
-    folder = vi.save_result(vi.simulate(vi.load_case("paper:type1-theory")), tmp_path / "drop")
+    folder = vi.simulate(vi.load_case("paper:type1-theory")).save(tmp_path / "drop")
     (tmp_path / "mine").mkdir()
     response = vi.simulate(vi.load_case("paper:type1-theory"))
 
@@ -214,7 +214,7 @@ def test_no_folder_is_left_where_nothing_could_be_written(
     monkeypatch.setattr(Path, "open", full)
     writes = [
         lambda place: vi.save_figures(folder, ["png"], place),
-        lambda place: vi.save_result(response, place),
+        lambda place: response.save(place),
         lambda place: vi.exporting.export_result(folder, "csv", place),
     ]
     for number, write in enumerate(writes):

@@ -4,6 +4,7 @@ facets; and the page that shows them.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,9 +18,9 @@ from vibroimpact.charts.matplotlib import matplotlib_figure
 from vibroimpact.charts.notebook import plotly_figure
 from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.modes.charts import mode_charts
-from vibroimpact.modes.page import modes_page
 from vibroimpact.modes.scene import mode_scene
 from vibroimpact.modes.tables import mode_table
+from vibroimpact.report.page_of_report import page_of_report
 from vibroimpact.structures.lattice import box_mesh
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.outline import outline
@@ -120,7 +121,7 @@ def test_edge_supports_contact_and_sensors_are_marked() -> None:
     figure = matplotlib_figure(chart)
     figure.canvas.draw()
     assert plotly_figure(chart).layout.title.text == "Modes of the plate"
-    page = modes_page(case, modes, [chart])
+    page = page_of_report(modes.report)
     assert "<img" not in page
     assert page.count('<option value="0">1: ') == 1
 
@@ -153,7 +154,7 @@ def test_a_mode_in_the_plane_is_a_deformed_grid() -> None:
 
 
 @pytest.fixture(scope="module")
-def sphere() -> tuple[dict[str, vi.BodyModes], Chart]:
+def sphere() -> tuple[vi.Modes, Chart]:
     body = {
         "radius": 0.025,
         "material": "rock-paper",
@@ -167,7 +168,7 @@ def sphere() -> tuple[dict[str, vi.BodyModes], Chart]:
 
 
 def test_facets_of_a_sphere_are_those_that_are_seen(
-    sphere: tuple[dict[str, vi.BodyModes], Chart],
+    sphere: tuple[vi.Modes, Chart],
 ) -> None:
     """They cover its disc once, and tell how far the surface moves outwards, relative to
     where it moves most.
@@ -197,7 +198,7 @@ def test_facets_of_a_sphere_are_those_that_are_seen(
 
 
 def test_facets_with_a_scale_have_its_bar_and_tell_their_values(
-    sphere: tuple[dict[str, vi.BodyModes], Chart],
+    sphere: tuple[vi.Modes, Chart],
 ) -> None:
     _, chart = sphere
     drawn = plotly_chart(chart)
@@ -214,22 +215,22 @@ def test_facets_with_a_scale_have_its_bar_and_tell_their_values(
 
 
 def test_a_sphere_alone_has_a_page_without_a_plate_in_motion(
-    sphere: tuple[dict[str, vi.BodyModes], Chart],
+    sphere: tuple[vi.Modes, Chart],
 ) -> None:
-    modes, chart = sphere
+    modes, _ = sphere
     case = vi.case_of(
         plain_case(
             name="<script>alert(1)</script>", sphere={"radius": 0.025, "material": "rock-paper"}
         )
     )
-    page = modes_page(case, modes, [chart])
+    page = page_of_report(replace(modes, case=case).report)
     assert "<script>alert" not in page
     assert "Plate in motion" not in page
-    headers, rows = mode_table(modes["sphere"])
+    table = mode_table(modes["sphere"])
     # free, undamped, of a mesh too coarse for estimates
-    assert [name for name, _ in headers] == ["mode", "frequency", "shape at contact"]
-    assert len(rows) == 12
-    assert all(f"<td>{row[1]}</td>" in page for row in rows)
+    assert [name for name, _ in table.headings] == ["mode", "frequency", "shape at contact"]
+    assert len(table.rows) == 12
+    assert all(f"<td>{row[1]}</td>" in page for row in table.rows)
 
 
 def test_the_outline_goes_around_holes_and_follows_curved_edges() -> None:

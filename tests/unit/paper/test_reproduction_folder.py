@@ -22,31 +22,34 @@ import pytest
 from PIL import Image
 
 import vibroimpact as vi
+from vibroimpact.charts.chart import Chart
 from vibroimpact.charts.pack import unpack
 from vibroimpact.cli import main
 from vibroimpact.files.check_sums import read_sealed, sealed
 from vibroimpact.paper.printed import printed
 from vibroimpact.paper.report import folder as module
+from vibroimpact.paper.report.blocks import blocks_of
+from vibroimpact.paper.report.counts import kind_counts, range_widths, verdict_counts
 from vibroimpact.paper.report.docs_page import write_docs_page
 from vibroimpact.paper.report.folder import (
-    is_reproduction,
     missing_parts,
-    read_charts,
-    read_parts,
     reproduce_paper,
     write_reproduction_report,
 )
-from vibroimpact.paper.report.outline import PARTS, ReportPart, find_parts, render_part
-from vibroimpact.paper.report.page import (
-    kind_counts,
-    range_widths,
-    report_html,
-    report_text,
-    verdict_counts,
+from vibroimpact.paper.report.markdown_report import markdown_report
+from vibroimpact.paper.report.outline import (
+    PARTS,
+    RenderedPart,
+    ReportPart,
+    find_parts,
+    render_part,
 )
+from vibroimpact.paper.report.reproduction import is_reproduction, load_reproduction
 from vibroimpact.paper.report_section import ComparedValue, Kind, ReportSection, Verdict
 from vibroimpact.paper.runs import Runs
 from vibroimpact.report.page import plotly_script
+from vibroimpact.report.page_of_report import page_of_report
+from vibroimpact.report.report import Figure, Heading, Paragraph, Report, Section, Table
 
 QUICK = ["table1", "section3.1", "fig4"]
 COLUMNS = "part,name,what,place,read,unit,relation,printed,by,computed,difference,allowed,verdict,why,kind,range_low,range_high"
@@ -111,14 +114,14 @@ def test_holds_what_it_should(made: Path) -> None:
     assert is_reproduction(made)
     assert json.loads((made / "summary.json").read_text())["version"] == vi.__version__
     assert missing_parts(made) == [name for name in PARTS if name not in QUICK]
-    assert list(read_parts(made)) == [name for name in PARTS if name in QUICK]
+    assert list(load_reproduction(made).parts) == [name for name in PARTS if name in QUICK]
 
 
 def test_values_are_a_table_of_numbers(made: Path) -> None:
     text = (made / "values.csv").read_text(encoding="utf-8")
     assert text.startswith(COLUMNS + "\n")
     rows = list(csv.DictReader(text.splitlines()))
-    kept = [row for part in read_parts(made).values() for row in part["rows"]]
+    kept = load_reproduction(made).values
     assert [row["part"] for row in rows] == ["table1"] * 14 + ["section3.1"] * 3
     for row, before in zip(rows, kept, strict=True):
         assert [float(row[name]) for name in ("computed", "difference", "allowed")] == [
@@ -166,9 +169,9 @@ def test_the_page_needs_nothing_else(made: Path) -> None:
         r"""(?:src|href)=["'](?!data:|#)|url\(|https?://|<link|@import""",
         page.partition("<script")[0],
     )
-    assert page.count('<td class="reproduced">reproduced</td>') == 16
+    assert page.count('<td class="text wrapped good">reproduced</td>') == 16
     assert re.search(
-        r'<td class="not_reproduced">not reproduced: with the printed one the first '
+        r'<td class="text wrapped bad">not reproduced: with the printed one the first '
         r"rebound would be [^<]*</td>",
         page,
     )
@@ -199,27 +202,27 @@ def test_the_page_has_the_chart_in_the_place_of_its_image(made: Path) -> None:
     ]
 
 
-def test_a_page_keeps_its_text_around_charts() -> None:
+def test_a_text_is_kept_around_its_chart() -> None:
     image = '![Title: a "b"](figures/fig4.png)\n\nThe caption.\n'
-    text = (
-        f'# Top\n\n## Chapter\n\n### Title: a "b"\n\n{image}\nBetween.\n\n### '
-        f"Other\n\n{image}\nAfter.\n"
-    )
-    words = {"name": "fig4", "title": 'Title: a "b"', "subtitle": "", "caption": "The caption."}
-    chart = {**words, "data": [], "layout": {"height": 1}, "views": [], "rows": [[["", 1]]]}
-    page = report_html(text, [chart])
-    body = page[page.index("<h1>") : page.index("</main>")]
+    chart = Chart("fig4", 'Title: a "b"', (), "The caption.")
     # a heading that is the title of the chart is not repeated, another one stays
-    assert re.findall(r"<h3>([^<]*)</h3>", body) == [
-        "Title: a &#34;b&#34;",
-        "Other",
-        "Title: a &#34;b&#34;",
-    ]
-    assert re.findall(r"<p>([^<]*)</p>", body) == ["Between.", "After."]
-    assert body.count("<figcaption>The caption.</figcaption>") == 2
+    repeated = f'### Title: a "b"\n\n{image}\nBetween \\<i\\> \\*x\\*.\n'
+    assert blocks_of(repeated, chart) == [Figure(chart), Paragraph("Between <i> *x*.")]
+    other = f"### Other\n\nBefore.\n\n{image}"
+    assert blocks_of(other, chart) == [Heading("Other"), Paragraph("Before."), Figure(chart)]
 
 
-def test_verdicts_have_classes_and_words_have_none() -> None:
+def test_a_table_of_a_text_has_its_title_and_cells() -> None:
+    (table,) = blocks_of(
+        "**The masses \\[kg\\]**\n\n| body | mass |\n| --- | --- |\n| a\\|b |  |\n"
+    )
+    assert isinstance(table, Table)
+    assert table.title == "The masses [kg]"
+    assert [column.heading for column in table.columns] == ["body", "mass"]
+    assert [list(column.cells) for column in table.columns] == [["a|b"], [""]]
+
+
+def test_verdicts_have_colours_and_words_have_none() -> None:
     cells = [
         "reproduced",
         "explained: by |samples|",
@@ -229,31 +232,24 @@ def test_verdicts_have_classes_and_words_have_none() -> None:
         "explained here",
         "not fitted",
     ]
-    text = "| Verdict |\n| --- |\n" + "".join(
-        f"| {cell.replace('|', chr(92) + '|')} |\n" for cell in cells
+    text = "| Value | Verdict |\n| --- | --- |\n" + "".join(
+        f"| mass | {cell.replace('|', chr(92) + '|')} |\n" for cell in cells
     )
-    page = report_html(text, [])
-    assert all(f".{verdict.name.lower()} {{ color" in page for verdict in Verdict)
-    classes = re.findall(r"<td(?: class=\"(\w+)\")?>", page)
-    assert classes == [
-        "reproduced",
-        "explained",
-        "fitted",
-        "not_reproduced",
-        "not_reproduced",
-        "",
-        "",
-    ]
+    (table,) = blocks_of(text)
+    assert isinstance(table, Table)
+    assert list(table.columns[1].cells) == cells
+    assert list(table.columns[1].tones) == ["good", "fair", "soft", "bad", "bad", "", ""]
+    page = page_of_report(Report("Values", (Section("values", "Values", (table,)),), {}))
+    for tone in ("good", "fair", "soft", "bad"):
+        assert f".{tone} {{ color" in page
+        assert f'<td class="text wrapped {tone}">' in page
 
 
 def test_counts_tell_each_verdict_apart() -> None:
-    def part(*verdicts: Verdict) -> dict[str, Any]:
+    def part(*verdicts: Verdict) -> RenderedPart:
         ranges = {"kind": "result", "printed": "-2", "range_low": -3.0, "range_high": -2.0}
-        return {
-            "title": "T|1",
-            "text": "A text.\n",
-            "rows": [{"verdict": verdict.value, **ranges} for verdict in verdicts],
-        }
+        rows = [{"verdict": verdict.value, **ranges} for verdict in verdicts]
+        return RenderedPart("T|1", "A text.\n", rows, None)
 
     parts = {
         "table1": part(*Verdict),
@@ -265,7 +261,7 @@ def test_counts_tell_each_verdict_apart() -> None:
         "section3.2": [0, 0, 2, 0],
         "all": [1, 1, 3, 1],
     }
-    assert "| T\\|1 | 1 | 1 | 1 | 1 |" in report_text(parts)
+    assert "| T\\|1 | 1 | 1 | 1 | 1 |" in markdown_report(parts)
     assert (
         verdict_counts({"fig3": part()})
         == kind_counts({"fig3": part()})
@@ -277,9 +273,9 @@ def test_counts_tell_each_verdict_apart() -> None:
     } == {"result": [1, 1, 3, 1]}
     assert list(kind_counts(parts)) == [kind.value for kind in Kind]
     assert range_widths(parts) == {"table1": (1, 0.5, 0.5)}
-    assert "| T\\|1 | 1 | 50 % | 50 % |" in report_text(parts)
-    assert "| Part |" not in report_text({"fig3": part()})
-    assert "Not made yet" not in report_text({name: part() for name in PARTS})
+    assert "| T\\|1 | 1 | 50 % | 50 % |" in markdown_report(parts)
+    assert "| Part |" not in markdown_report({"fig3": part()})
+    assert "Not made yet" not in markdown_report({name: part() for name in PARTS})
 
 
 def test_a_part_is_text_values_and_figure(made: Path) -> None:
@@ -394,7 +390,7 @@ def test_other_folders_and_files_are_refused(tmp_path: Path, force: bool) -> Non
             reproduce_paper(tmp_path / name, ["table1"], force=force)
     assert contents(tmp_path) == before
     with pytest.raises(vi.InputError, match="not the folder of a reproduction"):
-        read_parts(tmp_path / "thesis")
+        load_reproduction(tmp_path / "thesis")
 
 
 def test_the_result_of_a_run_is_not_added_to(tmp_path: Path, theory: vi.Response) -> None:
@@ -453,7 +449,7 @@ def test_earlier_parts_stay_when_a_part_fails(
     )
     monkeypatch.undo()
     reproduce_paper(tmp_path / "paper", ["fig3"])  # goes on
-    assert "fig3" in read_parts(tmp_path / "paper")
+    assert "fig3" in load_reproduction(tmp_path / "paper").parts
 
 
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
@@ -506,13 +502,13 @@ def test_a_damaged_part_is_told_and_mended_by_the_command_it_names(
     with pytest.raises(
         vi.InputError, match="the file is damaged; make it anew: vibroimpact reproduce"
     ) as told:
-        read_parts(copy)
+        load_reproduction(copy)
     assert str(told.value).startswith(f"{copy / 'parts' / 'table1.json'}: ")
     assert "table1" in missing_parts(copy)
     assert (
         command(monkeypatch, *shlex.split(str(told.value).partition("anew: vibroimpact ")[2])) == 0
     )
-    assert list(read_parts(copy)) == ["table1", "section3.1", "fig4"]
+    assert list(load_reproduction(copy).parts) == ["table1", "section3.1", "fig4"]
 
 
 @pytest.fixture(scope="module")
@@ -562,7 +558,7 @@ def test_a_missing_chart_is_told_and_mended_by_the_command_it_names(
         command(monkeypatch, *shlex.split(str(told.value).partition("anew: vibroimpact ")[2])) == 0
     )
     assert "fig3" not in missing_parts(copy)
-    assert [chart["name"] for chart in read_charts(copy, read_parts(copy))] == ["fig3", "fig4"]
+    assert list(load_reproduction(copy).charts) == ["fig3", "fig4"]
 
 
 def test_all_missing_charts_are_told_at_once(
@@ -598,7 +594,8 @@ def test_the_command_prints_the_counts(
         command(monkeypatch, "reproduce", "--only", "table1, section3.1", "-o", tmp_path / "paper")
         == 0
     )
-    *lines, last = capsys.readouterr().out.splitlines()
+    title, *lines, last = capsys.readouterr().out.splitlines()
+    assert title == "The paper, reproduced"
     by_part, by_kind, note = (
         [*rows] for blank, rows in groupby(lines, key=lambda line: not line.strip()) if not blank
     )

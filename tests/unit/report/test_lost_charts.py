@@ -21,7 +21,7 @@ from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.cli import main
 from vibroimpact.errors import ChartWarning
 from vibroimpact.runs import charts as run_charts_module
-from vibroimpact.runs import page as run_page_module
+from vibroimpact.runs import report as run_report_module
 
 SOURCE = Path(vi.__file__).parent
 
@@ -92,8 +92,8 @@ def test_charts_that_raise(
     monkeypatch.setattr(run_charts_module, "sensor_chart", fails)
     monkeypatch.setattr("vibroimpact.report.page.plotly_chart", draws_no_energy)
     monkeypatch.setattr(chart_files, "matplotlib_figure", draws_no_force)
-    monkeypatch.setattr(run_page_module, "scene_of", fails)
-    monkeypatch.setattr("vibroimpact.runs.figures.animate", fails)
+    monkeypatch.setattr(run_report_module, "scene_of", fails)
+    monkeypatch.setattr("vibroimpact.runs.animation.animate", fails)
     assert run(elastic_case(), tmp_path, "--figures", monkeypatch=monkeypatch) == 0
     told, page = capsys.readouterr().err, (tmp_path / "out/report.html").read_text()
     for name in ("sensor_a1", "energy", "force", "plate_in_motion"):

@@ -21,7 +21,7 @@ from vibroimpact.charts.files import render_png
 from vibroimpact.charts.matplotlib import matplotlib_figure
 from vibroimpact.cli import main
 from vibroimpact.errors import MOST_LINES, ComputationError, InputError
-from vibroimpact.results.folder import check_free
+from vibroimpact.files.result_folder import check_free
 from vibroimpact.results.result import result_of
 from vibroimpact.runs.charts import run_charts
 from vibroimpact.studies.compute_points import compute_points

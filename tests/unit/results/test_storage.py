@@ -23,7 +23,7 @@ from pages import Page
 from vibroimpact.cli import main
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, LEDGER, meanings
 from vibroimpact.files.hdf5 import new_array, new_hdf5, read_array
-from vibroimpact.results.folder import new_folder
+from vibroimpact.files.result_folder import new_folder
 from vibroimpact.results.netcdf import read_groups
 
 HEADER = (
@@ -235,7 +235,7 @@ def test_a_failure_leaves_nothing_and_loses_nothing(
     def breaks(*_: object) -> None:
         raise OSError("no space left on device")
 
-    monkeypatch.setattr("vibroimpact.runs.save.write_report", breaks)
+    monkeypatch.setattr("vibroimpact.report.save_report.write_page", breaks)
     for name in ("new", "out"):
         with pytest.raises(OSError, match="no space"):
             theory.save(tmp_path / name, force=True)

@@ -31,8 +31,9 @@ from vibroimpact.dynamics.columns import (
     VIBRATION_LEDGER,
     meanings,
 )
+from vibroimpact.report.page_of_report import page_of_report
+from vibroimpact.report.terminal_report import terminal_report
 from vibroimpact.results.deflection import frame_times
-from vibroimpact.results.folder import write_result
 from vibroimpact.results.result import Result, result_of
 from vibroimpact.results.surface_grid import surface_grid
 from vibroimpact.runs import paraview
@@ -40,13 +41,12 @@ from vibroimpact.runs.animation import animate
 from vibroimpact.runs.charts import run_charts
 from vibroimpact.runs.deformation import counted_twice, deformation_rows, treatment_sentence
 from vibroimpact.runs.energy_chart import bands_of
-from vibroimpact.runs.page import run_page
 from vibroimpact.runs.paraview import write_paraview
 from vibroimpact.runs.scene import exaggeration, scene_of
 from vibroimpact.runs.spectrum import amplitude_spectrum
 from vibroimpact.runs.tables import impact_table
-from vibroimpact.runs.text import result_summary
 from vibroimpact.structures.lattice import box_mesh
+from written_results import write_result
 
 SPHERE = {
     "radius": "25 mm",
@@ -111,7 +111,7 @@ def result(folder: Path) -> Result:
 
 def printed(result: Result, width: int = 120) -> str:
     written = StringIO()
-    Console(width=width, file=written).print(result_summary(result, width))
+    Console(width=width, file=written).print(terminal_report(result.report))
     return " ".join(written.getvalue().split())
 
 
@@ -161,7 +161,7 @@ def test_the_energy_lost_is_told_to_be_that_of_the_contact(result: Result) -> No
     """Where the table has the column, and bodies vibrate."""
     words = "Energy lost is the energy dissipated in the contact, without the energy of vibration."
     assert words in printed(result)
-    assert words in " ".join(run_page(result).split())
+    assert words in " ".join(page_of_report(result.report).split())
     assert "Energy lost is" not in printed(result, 60)
     assert "Energy lost is" not in printed(
         result_of(vi.simulate(vi.load_case("paper:type1-theory")))
@@ -346,7 +346,7 @@ def test_paraview_takes_fewer_frames_of_a_fine_mesh(
     response: vi.Response, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(paraview, "_MOST_BYTES", 4e5)
-    write_paraview(response, tmp_path)
+    write_paraview(response, tmp_path / "some")
     files = list(tmp_path.rglob("*.vtu"))
     assert 4 <= len(files) < 40
     assert sum(file.stat().st_size for file in files) < 4.4e5
@@ -440,7 +440,7 @@ def test_identified_tells_its_element(tmp_path: Path) -> None:
         elastic_case(contact=contact, sphere=sphere, sensors=[], run={"impacts": 1})
     )
     write_result(result_of(response), tmp_path)
-    write_paraview(response, tmp_path)
+    write_paraview(response, tmp_path / "paraview")
     result = vi.load_result(tmp_path)
     assert "sphere" not in result.peaks
     assert dict(deformation_rows(result))["Stiffness of the local element"] == "2000000\u00a0N/m"
@@ -478,7 +478,7 @@ def test_a_run_without_impact_is_saved(response: vi.Response, tmp_path: Path) ->
     )
     response = vi.simulate(problem)
     write_result(result_of(response), tmp_path)
-    write_paraview(response, tmp_path)
+    write_paraview(response, tmp_path / "paraview")
     summary = json.loads((tmp_path / "summary.json").read_text())
     assert summary["truncation"] == {"sphere": None, "plate": None}
     result = vi.load_result(tmp_path)
@@ -486,19 +486,20 @@ def test_a_run_without_impact_is_saved(response: vi.Response, tmp_path: Path) ->
     assert not (tmp_path / "paraview").exists()
     assert names_of(result) == {"position", "velocity", "energy"}
     assert "No impact" in printed(result)
-    assert "No impact within the run." in Page(run_page(result)).text
+    assert "No impact within the run." in Page(page_of_report(result.report)).text
 
 
 def test_contacts_are_shown_where_a_visit_has_several(result: Result) -> None:
     several = replace(result, impacts={**result.impacts, "contacts": np.array([1.0, 3.0])})
-    headers, rows, *_ = impact_table(several)
+    table = impact_table(several)
+    headers, rows = table.headings, table.rows
     assert headers[-1] == ("Contacts in the impact", "")
     assert [row[-1] for row in rows] == ["1", "3"]
     for width in (80, 110, 120):
         assert " contacts " in printed(several, width)
         assert "…" not in printed(several, width)
     once = replace(result, impacts={**result.impacts, "contacts": np.ones(2)})
-    assert ("Contacts in the impact", "") not in impact_table(once).headers
+    assert ("Contacts in the impact", "") not in impact_table(once).headings
 
 
 def test_frames_follow_the_visit_and_stay_in_the_run() -> None:

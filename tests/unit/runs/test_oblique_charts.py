@@ -14,7 +14,6 @@ import vibroimpact as vi
 from vibroimpact.charts.chart import Chart
 from vibroimpact.charts.marks import Arrow, Label, Line, Outline, Points
 from vibroimpact.runs.charts import chart_makers
-from vibroimpact.studies.report.charts import study_charts
 
 CASE: dict[str, Any] = {
     "sphere": {
@@ -123,7 +122,7 @@ def charts_of(
             folder / "study",
         )
     )
-    return {chart.name: chart for chart in study_charts(study)}
+    return study.charts
 
 
 def test_a_study_over_the_angle_draws_what_the_plate_leaves_of_the_motion_along_it(

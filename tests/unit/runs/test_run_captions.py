@@ -4,16 +4,17 @@ friction, and of a sphere that vibrates.
 
 from __future__ import annotations
 
+from html import unescape
 from typing import Any
 
 import pytest
 from rich.console import Console
 
 import vibroimpact as vi
+from vibroimpact.report.page_of_report import page_of_report
 from vibroimpact.runs.captions import caption, left_out
 from vibroimpact.runs.case_explained import case_explained
 from vibroimpact.runs.history_charts import POSITION, history_chart
-from vibroimpact.runs.page import run_page
 from vibroimpact.runs.setup import setup_chart
 
 SPHERE = {"radius": "10 mm", "material": "steel"}
@@ -75,7 +76,7 @@ def test_heights_over_a_shaken_plate_are_above_its_mean_position() -> None:
     )
     assert (
         "Rebound height is that of the sphere's centre above the mean position of the plate."
-        in run_page(result)
+        in unescape(page_of_report(result.report))
     )
     assert "remains" not in words("energy", result)
 

@@ -158,7 +158,7 @@ def elastic(tmp_path_factory: pytest.TempPathFactory) -> Path:
             ],
         }
     )
-    vi.save_result(vi.simulate(case), place)
+    vi.simulate(case).save(place)
     return place
 
 

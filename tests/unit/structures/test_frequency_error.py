@@ -14,7 +14,6 @@ import pytest
 import vibroimpact as vi
 from vibroimpact.bodies.elastic import plate_recipe
 from vibroimpact.materials import Material
-from vibroimpact.modes.folder import save_modes
 from vibroimpact.structures.frequency_error import main_cause, mesh_errors
 from vibroimpact.structures.plate_waves import _lamb, bending_error
 from vibroimpact.structures.recipe import (
@@ -218,7 +217,7 @@ def case(**plate: object) -> vi.Case:
 def test_they_are_written(tmp_path: Path) -> None:
     asked = case(mesh={"element_size": 0.1})
     modes = vi.compute_modes(asked)
-    save_modes(asked, modes, tmp_path / "out")
+    modes.save(tmp_path / "out")
     with (tmp_path / "out" / "modes.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     found = [float(row["frequency_error"]) for row in rows]

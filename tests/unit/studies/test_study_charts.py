@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -31,7 +32,6 @@ from vibroimpact.report.page import palette
 from vibroimpact.studies import compute_study as computing
 from vibroimpact.studies.chunk_file import ChunkResult
 from vibroimpact.studies.drop_variables import OUTCOME
-from vibroimpact.studies.report.charts import study_charts
 from vibroimpact.studies.report.outputs import study_outputs
 from vibroimpact.studies.report.sensitivity_table import sensitivity_of
 from vibroimpact.studies.run_sweep import run_sweep
@@ -61,7 +61,7 @@ def study_of(folder: Path, sweep: Mapping[str, Any], **sections: Any) -> Study:
 
 
 def charts_of(study: Study) -> dict[str, Chart]:
-    return {chart.name: chart for chart in study_charts(study)}
+    return study.charts
 
 
 def drop_in(text: str) -> int:
@@ -288,7 +288,7 @@ def test_a_large_study_stays_light(tmp_path: Path) -> None:
         tmp_path, {"over": DRAWN, "design": "sobol", "samples": 2**13, "keep": ["peaks"]}
     )
     assert (study.path.parent / "report.html").stat().st_size < 4e6
-    for chart in study_charts(study):
+    for chart in study.charts.values():
         for panel in chart.panels:
             assert (
                 sum(len(mark.x) for mark in panel.marks if isinstance(mark, Points) and mark.keys)
@@ -377,7 +377,7 @@ def test_the_command_of_a_drop_gives_its_results(
     study = study_of(tmp_path, sweep, **sections)
     number = study.size - 1
     chart = next(
-        iter(chart for chart in study_charts(study) if chart.name not in ("inputs", "outputs"))
+        iter(chart for chart in study.charts.values() if chart.name not in ("inputs", "outputs"))
     )
     texts = [
         text
@@ -437,7 +437,7 @@ def test_a_study_in_a_notebook(drawn: Study) -> None:
     assert figure.layout.title.text == "Restitution asked and achieved"
     assert drawn.plot().layout.title.text == "Sampled keys"
     with pytest.raises(
-        vi.InputError, match='there is no chart "restituton" of this study; there are inputs, '
+        vi.InputError, match='there is no chart "restituton"; there are inputs, '
     ) as told:
         drawn.plot("restituton")
     assert told.value.message.endswith('Did you mean "restitution"?')
@@ -464,10 +464,10 @@ def test_keys_that_are_markup_are_shown_as_they_are(drawn: Study, tmp_path: Path
             drawn.coordinates["sphere.material"] == "glass", hostile, "$x$"
         ),
     }
-    study = Study(**{**vars(drawn), "coordinates": coordinates})
+    study = replace(drawn, coordinates=coordinates)
     for chart in [
         chart
-        for chart in study_charts(study)
+        for chart in study.charts.values()
         if chart.name in ("inputs", "largest_force_N", "restitution")
     ]:
         matplotlib_figure(chart).draw_without_rendering()
@@ -486,10 +486,10 @@ def test_no_figure_is_drawn_for_a_report(drawn: Study) -> None:
     program = """
 import sys
 from pathlib import Path
-from vibroimpact.studies.report.page import write_study_report
+from vibroimpact.studies.report.write_report import write_study_report
 from vibroimpact.studies.study import load_study
 folder = Path(sys.argv[1])
-write_study_report(load_study(folder), folder)
+write_study_report(load_study(folder))
 print([name for name in sys.modules if name.split(".")[0] in ("matplotlib", "plotly")])
 """
     done = subprocess.run(

@@ -21,6 +21,7 @@ from support import plain_case
 from vibroimpact.dynamics.response import Outcome
 from vibroimpact.errors import InputError
 from vibroimpact.regenerate import remake_report
+from vibroimpact.report.terminal_report import terminal_report
 from vibroimpact.studies import compute_study as computing
 from vibroimpact.studies.chunk_file import ChunkResult
 from vibroimpact.studies.drop_variables import OUTCOME
@@ -34,7 +35,6 @@ from vibroimpact.studies.report.outputs import (
 from vibroimpact.studies.report.scales import key_axis, places
 from vibroimpact.studies.report.sensitivity_table import sensitivity_of, strongest
 from vibroimpact.studies.report.tables import percentiles_table, sensitivity_table, without_effect
-from vibroimpact.studies.report.text import study_summary
 from vibroimpact.studies.run_sweep import run_sweep
 from vibroimpact.studies.study import Study, load_study
 from vibroimpact.studies.sweep_file import sweep_of
@@ -95,7 +95,7 @@ def page_of(study: Study) -> str:
 def told(study: Study, width: int = 100) -> str:
     console = Console(width=width, color_system=None)
     with console.capture() as capture:
-        console.print(study_summary(study, width))
+        console.print(terminal_report(study.report))
     return capture.get()
 
 
@@ -349,7 +349,7 @@ def test_a_report_that_cannot_be_written_leaves_the_old_one(
     def full(*_: Any, **__: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("vibroimpact.studies.report.page.render_page", full)
+    monkeypatch.setattr("vibroimpact.report.save_report.page_of_report", full)
     with pytest.raises(InputError, match="No space left"):
         remake_report(copy_of_grid)
     assert (copy_of_grid / "report.html").read_bytes() == before
@@ -392,9 +392,12 @@ def test_tables_have_no_rows_of_zeros_and_no_columns_of_dashes(tmp_path: Path) -
         {"over": {"plate.size.thickness": ["5 mm", "8 mm"], "sphere.radius": ["10 mm"]}},
         plate=PLATE,
     )
-    headers, rows = percentiles_table(study_outputs(study))
-    assert "Standard deviation" not in headers  # no result differs: the plate is rigid
-    assert all(any(set(cell) - set("0.\u2013") for cell in row[3:]) for row in rows)
+    columns = percentiles_table(study_outputs(study)).columns
+    # no result differs: the plate is rigid
+    assert "Standard deviation" not in [column.heading for column in columns]
+    rows = list(zip(*(column.cells for column in columns[3:]), strict=True))
+    assert rows
+    assert all(any(set(cell) - set("0.\u2013") for cell in row) for row in rows)
     # the closure may be zero to the last digit
     zeros = re.findall(r"Zero in all drops: ([^.<]*)", page_of(study))
     assert zeros in ([], ["closure of the energy, relative"]), zeros
@@ -406,7 +409,7 @@ def test_keys_without_effect_are_named_and_not_a_row(tmp_path: Path) -> None:
     found = sensitivity_of(study, study_outputs(study))
     assert found is not None
     outputs = drawn_outputs(study_outputs(study))
-    assert [row[0] for row in sensitivity_table(found, outputs)[1]] == ["sphere.radius"]
+    assert list(sensitivity_table(found, outputs).columns[0].cells) == ["sphere.radius"]
     assert without_effect(found, outputs) == ["plate.size.thickness"]
     assert (
         "Left out, as all their numbers are missing or zero once rounded: plate.size.thickness."

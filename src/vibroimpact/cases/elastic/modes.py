@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -16,6 +16,7 @@ from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.cases.limit import two_digits
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
+from vibroimpact.report.reported import Reported
 from vibroimpact.structures.damping import ConstantRatio, RatioOfEach, RatioTable
 from vibroimpact.structures.frequency_error import MESH, REDUCTION, SUPPORTS, THEORY
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
@@ -87,11 +88,61 @@ class BodyModes:
     doubts: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True, eq=False)
+class Modes(Reported, Mapping[str, BodyModes], reported_in="vibroimpact.modes.report"):
+    """Modes of the elastic bodies of a case, by the name of the body.
+
+    The folder that `save` writes has `report.html`, `modes.csv`, `points.csv` if points are
+    watched, `summary.json`, `case.toml`, and for each body its mesh as .bdf and .inp and its shapes
+    as .vtu. The charts are "sphere_modes" and "plate_modes", of the bodies that are elastic: their
+    first shapes, up to twelve.
+
+    Parameters
+    ----------
+    case : CaseTable
+        The case.
+    bodies : mapping of str to BodyModes
+        The bodies with their modes, "sphere", "plate" or both.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> case = vi.case_of(
+    ...     {
+    ...         "sphere": {
+    ...             "radius": "25 mm",
+    ...             "material": "rock-paper",
+    ...             "model": "elastic",
+    ...             "modes": 5,
+    ...         },
+    ...         "plate": {"material": "rigid"},
+    ...         "drop": {"speed": 1.0},
+    ...         "contact": {"law": "hertz"},
+    ...     }
+    ... )
+    >>> modes = vi.compute_modes(case)
+    >>> list(modes), list(modes.charts)
+    (['sphere'], ['sphere_modes'])
+    """
+
+    case: CaseTable
+    bodies: Mapping[str, BodyModes]
+
+    def __getitem__(self, name: str) -> BodyModes:
+        return self.bodies[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.bodies)
+
+    def __len__(self) -> int:
+        return len(self.bodies)
+
+
 def compute_modes(
     case: CaseTable,
     progress: Callable[[float], None] | None = None,
     tell: Callable[[str], None] | None = None,
-) -> dict[str, BodyModes]:
+) -> Modes:
     """Return the modes of the elastic bodies of a case, by the name of the body.
 
     Parameters
@@ -158,7 +209,7 @@ def compute_modes(
             raise InputError(
                 error.message, ".".join(part for part in (name, error.key) if part)
             ) from None
-    return found
+    return Modes(case, found)
 
 
 def contact_place(body: BodyModes) -> tuple[tuple[float, float], Side]:

@@ -66,45 +66,40 @@ def comparison_sentence(shown: ComparedQuantity, kinds: tuple[int, ...], runs: R
         treatment: [shown.value(runs.treated(kind, treatment)) for kind in kinds]
         for treatment in TREATMENTS
     }
-    printed_values = (
-        [printed(shown.printed.format(kind)) for kind in kinds] if shown.printed else []
-    )
+    printed_values = []
+    if shown.printed:
+        printed_values = [printed(shown.printed.format(kind)) for kind in kinds]
+    wanted = [value.value for value in printed_values]
     everything = [value for values in computed.values() for value in values]
-    scale = multiple(
-        shown.unit, everything if any(everything) else [one.value for one in printed_values]
-    )
+    scale = multiple(shown.unit, everything if any(everything) else wanted)
 
     def listed(values: list[float]) -> str:
         return " and ".join(digits(value / scale.size) for value in values)
 
-    of = " (Types 2 and 3)" if len(kinds) > 1 else ""
-    said = (
-        f"{shown.peak}{of}: "
-        + ", ".join(f"{name} {listed(values)}" for name, values in computed.items())
-        + f" {scale.unit}"
-    )
+    has_types = len(kinds) > 1
+    types = " (Types 2 and 3)" if has_types else ""
+    of_treatments = ", ".join(f"{name} {listed(values)}" for name, values in computed.items())
+    results = f"{shown.peak}{types}: {of_treatments} {scale.unit}"
     if not printed_values:
-        return f"{said}; the paper prints none."
-    paper = f"{listed([one.value for one in printed_values])} {scale.unit}"
+        return f"{results}; the paper prints none."
+    paper = f"{listed(wanted)} {scale.unit}"
     if printed_values[-1].relation == "<":
-        below = [
-            name
-            for name, values in computed.items()
-            if np.all(np.array(values) < [one.value for one in printed_values])
-        ]
-        return f"{said}; the paper states below {paper}, and {_bound_clause(below)}."
-    off = {name: values[-1] / printed_values[-1].value - 1.0 for name, values in computed.items()}
-    nearest = min(off, key=lambda name: abs(off[name]))
-    side = "above" if off[nearest] > 0.0 else "below"
-    far = f"{digits(100.0 * abs(off[nearest]), 2)} % {side} it"
+        below = [name for name, values in computed.items() if np.all(np.array(values) < wanted)]
+        return f"{results}; the paper states below {paper}, and {_bound_clause(below)}."
+    differences = {name: values[-1] / wanted[-1] - 1.0 for name, values in computed.items()}
+    nearest = min(differences, key=lambda name: abs(differences[name]))
+    side = "above" if differences[nearest] > 0.0 else "below"
+    difference = f"{digits(100.0 * abs(differences[nearest]), 2)} % {side} it"
     return (
-        f"{said}; printed {paper}. Nearest to that{' of Type 3' if of else ''} is the "
-        f"{nearest} treatment, {far}."
+        f"{results}; printed {paper}. Nearest to that{' of Type 3' if has_types else ''} is the "
+        f"{nearest} treatment, {difference}."
     )
 
 
 def _bound_clause(names: list[str]) -> str:
     """Return the clause on the treatments that keep a printed bound."""
-    if len(names) in (0, len(TREATMENTS)):
-        return "so are all" if names else "none is"
+    if not names:
+        return "none is"
+    if len(names) == len(TREATMENTS):
+        return "so are all"
     return f"so {'is' if len(names) == 1 else 'are'} the {' and the '.join(names)} treatment alone"

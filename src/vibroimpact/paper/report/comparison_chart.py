@@ -12,7 +12,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Panel
-from vibroimpact.charts.marks import Label, Level
+from vibroimpact.charts.marks import Label, Level, Mark
 from vibroimpact.dynamics.response import Response
 from vibroimpact.paper.report.compared_quantity import ComparedQuantity
 from vibroimpact.paper.report.impact_views import impact_views, response_line
@@ -55,23 +55,21 @@ def comparison_rows(
     """
     responses = [line.response for lines in rows.values() for line in lines]
     views = impact_views(responses, window)
-    time, value = Axis("Time", "s", views=views), Axis(shown.short, shown.unit)
+    time = Axis("Time", "s", views=views)
+    value = Axis(shown.short, shown.unit)
     # a response that is in every row is drawn once
-    several = dict.fromkeys(line for lines in rows.values() for line in lines)
+    distinct_lines = dict.fromkeys(line for lines in rows.values() for line in lines)
     curves = {
         line: response_line(shown.timeline, line.response, views, line.name, line.role)
-        for line in several
+        for line in distinct_lines
     }
     levels = _levels(shown, marks, np.concatenate([curve.y for curve in curves.values()]))
     panels = []
     for title, lines in rows.items():
-        drawn = [curves[line] for line in lines]
-        nothing = (
-            [Label(0.5, 0.4, "zero", corner=True)]
-            if not any(np.any(curve.y) for curve in drawn)
-            else []
-        )
-        panels.append((Panel(time, value, (*drawn, *levels, *nothing), title),))
+        drawn: list[Mark] = [*(curves[line] for line in lines), *levels]
+        if not any(np.any(curves[line].y) for line in lines):
+            drawn.append(Label(0.5, 0.4, "zero", corner=True))
+        panels.append((Panel(time, value, tuple(drawn), title),))
     return tuple(panels)
 
 
@@ -79,28 +77,32 @@ def _levels(shown: ComparedQuantity, marks: Mapping[str, float], values: Floats)
     """Return the printed values that do not lie far from the curves, which they would
     flatten; neighbouring ones share a label.
     """
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    low = float(np.nanmin(values))
+    high = float(np.nanmax(values))
     reach = _MARK_DISTANCE * (high - low) if high > low else np.inf
-    found = [(sign * value, kind) for kind, value in marks.items() for sign in shown.signs]
-    near = sorted(one for one in found if low - reach <= one[0] <= high + reach)
-    span = max([high, *(level for level, _ in near)]) - min([low, *(level for level, _ in near)])
+    near = sorted(
+        (sign * value, kind)
+        for kind, value in marks.items()
+        for sign in shown.signs
+        if low - reach <= sign * value <= high + reach
+    )
+    shown_values = [low, high, *(level for level, _ in near)]
+    span = max(shown_values) - min(shown_values)
     groups: list[list[tuple[float, str]]] = []
-    for one in near:
-        if groups and one[0] - groups[-1][-1][0] < _LABEL_DISTANCE * span:
-            groups[-1].append(one)
+    for level, kind in near:
+        if groups and level - groups[-1][-1][0] < _LABEL_DISTANCE * span:
+            groups[-1].append((level, kind))
         else:
-            groups.append([one])
-    # the highest of the neighbours has the label, which stands above it
-    return [
-        Level(
-            level,
-            "printed",
-            "dotted",
-            label=_label([kind for _, kind in group]) if level == group[-1][0] else "",
-        )
-        for group in groups
-        for level, _ in group
-    ]
+            groups.append([(level, kind)])
+    levels = []
+    for group in groups:
+        # the highest of the neighbours has the label, which stands above it
+        highest = group[-1][0]
+        label = _label([kind for _, kind in group])
+        for level, _ in group:
+            shown_label = label if level == highest else ""
+            levels.append(Level(level, "printed", "dotted", label=shown_label))
+    return levels
 
 
 def _label(kinds: Sequence[str]) -> str:

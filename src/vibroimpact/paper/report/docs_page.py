@@ -11,7 +11,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from vibroimpact.charts.figures_folder import FIGURES
+from vibroimpact.files.result_folder import FIGURES
 
 _IMAGES = "images/reproduction"
 
@@ -25,7 +25,8 @@ def write_docs_page(directory: str | PathLike[str], docs: str | PathLike[str]) -
     """Write the page of the documentation and its figures from the folder of a
     reproduction; return the path of the page.
     """
-    folder, page = Path(directory), Path(docs) / "reproduction.md"
+    folder = Path(directory)
+    page = Path(docs) / "reproduction.md"
     shutil.rmtree(Path(docs) / _IMAGES, ignore_errors=True)
     (Path(docs) / _IMAGES).mkdir(parents=True)
     for picture in sorted((folder / FIGURES).glob("*.png")):

@@ -251,7 +251,8 @@ def _plate_quantity(
     marked on both sides of zero.
     """
     short = name.removeprefix("change of the ").removesuffix(" of the centre of mass").capitalize()
-    timeline, signs = history_column(history), (-1, 1) if oscillates else (1,)
+    timeline = history_column(history)
+    signs = (-1, 1) if oscillates else (1,)
     return ComparedQuantity(
         number,
         f"plate, {name}",

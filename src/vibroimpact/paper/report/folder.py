@@ -5,38 +5,34 @@ report on those available.
 from __future__ import annotations
 
 import json
-import shlex
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from contextlib import suppress
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from vibroimpact._version import __version__
-from vibroimpact.charts.figures_folder import FIGURES
 from vibroimpact.charts.made import drawn
-from vibroimpact.charts.pack import pack, unpack
+from vibroimpact.charts.pack import pack
 from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import write_into
-from vibroimpact.files.check_sums import CHECK_SUMS, check_file, file_digest, read_sealed, sealed
-from vibroimpact.files.json_reading import read_json_table
+from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, sealed
 from vibroimpact.files.recover import recover
-from vibroimpact.paper.report.outline import (
-    PARTS,
-    VALUE_COLUMNS,
-    ReportPart,
-    find_parts,
-    render_part,
+from vibroimpact.files.result_folder import FIGURES, SUMMARY, new_folder
+from vibroimpact.paper.report.outline import PARTS, ReportPart, find_parts, render_part
+from vibroimpact.paper.report.reproduction import (
+    PARTS_FOLDER,
+    chart_file,
+    is_reproduction,
+    load_reproduction,
+    part_file,
+    version_of_part,
 )
-from vibroimpact.paper.report.page import report_html, report_text
-from vibroimpact.paper.report_section import Kind, Verdict
 from vibroimpact.paper.runs import Runs
 from vibroimpact.report.page import replace_report_files
-from vibroimpact.results.csv_files import write_csv
-from vibroimpact.results.folder import SUMMARY, new_folder
-
-_PARTS = "parts"
+from vibroimpact.report.save_report import write_report
 
 
 def reproduce_paper(
@@ -125,20 +121,8 @@ def missing_parts(directory: str | PathLike[str]) -> list[str]:
     """Return the names of the parts that a folder lacks or has damaged, or that another
     version of this package wrote.
     """
-    return [name for name in PARTS if _version(Path(directory), name) != __version__]
-
-
-def _version(folder: Path, name: str) -> str | None:
-    """Return the version of the package that wrote a part; None if the part or its chart
-    is missing or damaged.
-    """
-    try:
-        table = read_sealed(_file(folder, name))
-        if _has_chart(table["text"]):
-            _check_chart(folder, name, table)
-        return str(table["version"])
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        return None
+    folder = Path(directory)
+    return [name for name in PARTS if version_of_part(folder, name) != __version__]
 
 
 def write_reproduction_report(folder: Path) -> None:
@@ -149,121 +133,8 @@ def write_reproduction_report(folder: Path) -> None:
     InputError
         If a part is damaged, or the folder can't be written to.
     """
-    parts = read_parts(folder)
-    charts = read_charts(folder, parts)
-    rows, text = reproduced_values(parts), report_text(parts)
-
-    def write(working: Path) -> None:
-        for name, page in {"report.md": text, "report.html": report_html(text, charts)}.items():
-            (working / name).write_text(page, encoding="utf-8")
-        if rows:
-            write_csv(rows, list(rows[0]), working / "values.csv")
-
-    replace_report_files(folder, write)
-
-
-def read_parts(folder: Path) -> dict[str, dict[str, Any]]:
-    """Return the available parts of a folder by name, in the order of the report.
-
-    Raises
-    ------
-    InputError
-        If the folder is not that of a reproduction, or a part is damaged.
-    """
-    if not is_reproduction(folder):
-        raise InputError(f"{folder}: this is not the folder of a reproduction")
-    found = {}
-    for name in PARTS:
-        file = _file(folder, name)
-        if file.is_file():
-            try:
-                table = read_sealed(file)
-                rows = [_row(row) for row in table["rows"]]
-                texts = {"title": str(table["title"]), "text": str(table["text"])}
-                found[name] = {**texts, "rows": rows, CHECK_SUMS: dict(table.get(CHECK_SUMS, {}))}
-            except (OSError, ValueError, KeyError, TypeError):
-                raise InputError(
-                    f"{file}: the file is damaged; {_repair_hint(folder, name)}"
-                ) from None
-    return found
-
-
-def _row(row: Any) -> dict[str, Any]:
-    """Return a row of `values.csv` as it is stored.
-
-    Raises
-    ------
-    KeyError, TypeError
-        If it has not the columns that it must have.
-    """
-    if not isinstance(row, dict) or row.keys() != set(VALUE_COLUMNS):
-        raise KeyError("its columns are not those of values.csv")
-    return {**row, "verdict": Verdict(row["verdict"]).value, "kind": Kind(row["kind"]).value}
-
-
-def reproduced_values(parts: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return the rows of `values.csv`: each value that the parts compare."""
-    return [row for part in parts.values() for row in part["rows"]]
-
-
-def read_charts(folder: Path, parts: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return the charts of parts that `read_parts` returned, as `plotly_chart` returns them.
-
-    Raises
-    ------
-    InputError
-        If a chart is missing, as in a folder of an earlier version, or damaged.
-    """
-    found, lacking = [], []
-    for name, part in parts.items():
-        if _has_chart(part["text"]):
-            try:
-                _check_chart(folder, name, part)
-                found.append(unpack(_chart_file(folder, name).read_bytes()))
-            except (OSError, ValueError):
-                lacking.append(name)
-    if lacking:
-        others = f", and those of {', '.join(lacking[1:])}" if lacking[1:] else ""
-        raise InputError(
-            f"{_chart_file(folder, lacking[0])}: the chart is missing or damaged{others}; "
-            f"{_repair_hint(folder, *lacking)}"
-        )
-    return found
-
-
-def _has_chart(text: str) -> bool:
-    return f"]({FIGURES}/" in text
-
-
-def _check_chart(folder: Path, name: str, part: Mapping[str, Any]) -> None:
-    """Check that the file of a part's chart is the one that was written with it."""
-    file = _chart_file(folder, name)
-    check_file(file, part.get(CHECK_SUMS, {}).get(file.name, ""))
-
-
-def _repair_hint(folder: Path, *names: str) -> str:
-    """Return the command that writes parts again."""
-    which = "it" if len(names) == 1 else "them"
-    return (
-        f"make {which} anew: vibroimpact reproduce -o {shlex.quote(str(folder))} --only "
-        f"{','.join(names)}"
-    )
-
-
-def is_reproduction(folder: Path) -> bool:
-    """Return whether a folder is that of a reproduction."""
-    try:
-        return bool(read_json_table(folder / SUMMARY).get("reproduction"))
-    except InputError:
-        return False
-
-
-def _file(folder: Path, part: str) -> Path:
-    return folder / _PARTS / f"{part}.json"
-
-
-def _chart_file(folder: Path, part: str) -> Path:
-    return folder / _PARTS / f"{part}.chart"
+    report = load_reproduction(folder).report
+    replace_report_files(folder, partial(write_report, report))
 
 
 def _write_part(part: ReportPart, runs: Runs, folder: Path) -> None:
@@ -271,7 +142,7 @@ def _write_part(part: ReportPart, runs: Runs, folder: Path) -> None:
     rendered = render_part(part, runs)
 
     def write(working: Path) -> None:
-        for name in (_PARTS, FIGURES):
+        for name in (PARTS_FOLDER, FIGURES):
             (working / name).mkdir()
         table: dict[str, Any] = {
             "version": __version__,
@@ -284,10 +155,10 @@ def _write_part(part: ReportPart, runs: Runs, folder: Path) -> None:
             from vibroimpact.charts.files import save_charts
 
             save_charts([rendered.chart], working / FIGURES)
-            file = _chart_file(working, part.name)
+            file = chart_file(working, part.name)
             file.write_bytes(pack(drawn(rendered.chart, plotly_chart)))
             table[CHECK_SUMS] = {file.name: file_digest(file)}
-        _file(working, part.name).write_bytes(sealed(table))
+        part_file(working, part.name).write_bytes(sealed(table))
 
     try:
         write_into(folder, write)

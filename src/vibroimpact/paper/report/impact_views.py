@@ -33,7 +33,8 @@ def impact_views(
     """
     found = []
     for impact in range(min(len(response.impacts["time_s"]) for response in responses)):
-        touch, (before, after) = float(responses[0].impacts["time_s"][impact]), shown(impact)
+        touch = float(responses[0].impacts["time_s"][impact])
+        (before, after) = shown(impact)
         since = f"Time since first touch of impact {impact + 1}"
         found.append(
             View(

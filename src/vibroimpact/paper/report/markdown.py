@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 from vibroimpact.charts.chart import Chart
-from vibroimpact.charts.figures_folder import FIGURES
+from vibroimpact.files.result_folder import FIGURES
 from vibroimpact.paper.printed import PrintedValue
 from vibroimpact.paper.report_section import ComparedValue, ReportSection
 from vibroimpact.report.markdown_table import markdown_table
@@ -40,7 +40,8 @@ def rows_table(rows: Sequence[ComparedValue]) -> str:
     """Return the table of printed and computed values; consecutive rows of one printed
     value show it once.
     """
-    cells, before = [], None
+    cells = []
+    before = None
     for row in rows:
         again = row.printed is before
         before = row.printed

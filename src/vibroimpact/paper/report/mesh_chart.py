@@ -60,9 +60,9 @@ def mesh_chart(runs: Runs) -> Chart:
 
 
 def _size_text(mesh: Mesh) -> str:
-    orders = {len(block.connectivity[0]) for block in mesh.blocks}
-    of = " and ".join(str(nodes) for nodes in sorted(orders))
-    return f"{mesh.number_of_elements} elements of {of} nodes each, {len(mesh.nodes)} nodes"
+    orders = sorted({len(block.connectivity[0]) for block in mesh.blocks})
+    nodes = " and ".join(map(str, orders))
+    return f"{mesh.number_of_elements} elements of {nodes} nodes each, {len(mesh.nodes)} nodes"
 
 
 def _printed_size_text(body: _Body) -> str:
@@ -71,14 +71,19 @@ def _printed_size_text(body: _Body) -> str:
 
 def _panel(body: _Body, mesh: Mesh) -> Panel:
     """Return a view of a mesh: its surface, edges and nodes; a flat mesh is viewed from above."""
-    marks = _from_above(mesh) if mesh.is_flat else _from_aside(mesh)
-    title = body.name.capitalize() + (", from above" if mesh.is_flat else "")
+    title = body.name.capitalize()
+    if mesh.is_flat:
+        marks = _from_above(mesh)
+        title = f"{title}, from above"
+    else:
+        marks = _from_aside(mesh)
     return Panel(Axis("x", "m"), Axis("y", "m"), marks, title, picture=True)
 
 
 def _from_above(mesh: Mesh) -> tuple[Mark, ...]:
     """Return the marks of a flat, rectangular mesh of quadrilaterals."""
-    (left, front), (right, back) = mesh.nodes[:, :2].min(axis=0), mesh.nodes[:, :2].max(axis=0)
+    left, front = mesh.nodes[:, :2].min(axis=0)
+    right, back = mesh.nodes[:, :2].max(axis=0)
     outline = Outline(np.array([left, right, right, left]), np.array([front, front, back, back]))
     edges = [
         _surface(group, mesh.nodes[group.connectivity], _edges(1).reshape(-1, 2))[0]
@@ -92,27 +97,40 @@ def _from_aside(mesh: Mesh) -> tuple[Mark, ...]:
     """Return the marks of the visible outer faces of a mesh, all quadrilaterals, which
     may be curved.
     """
-    corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
-    cells = np.array(
-        [(np.array([i, j]) + corners) / _FINE for i in range(_FINE) for j in range(_FINE)]
-    )
-    pieces, light, lines, nodes = [], [], [], []
+    cells = _cells()
+    facets = []
+    light = []
+    edges = []
+    nodes = []
     for group in outer_faces(mesh):
-        at = mesh.nodes[group.connectivity]
-        normal = _surface(group, at, cells.mean(axis=1))[1]
-        visible = normal @ VIEWER > 0.0
-        places = _surface(group, at, cells.reshape(-1, 2))[0].reshape(len(at), len(cells), 4, 3)
-        pieces.append(projected(places[visible]))
-        light.append(light_on(normal[visible]))
-        edge, slope = _surface(group, at, _edges(_FINE).reshape(-1, 2))
-        edge[slope @ VIEWER < 0.0] = np.nan
-        lines.append(_interrupted(projected(edge).reshape(-1, _FINE + 1, 2)))
+        node_positions = mesh.nodes[group.connectivity]
+        _, normals = _surface(group, node_positions, cells.mean(axis=1))
+        visible = normals @ VIEWER > 0.0
+        corners, _ = _surface(group, node_positions, cells.reshape(-1, 2))
+        corners = corners.reshape(len(node_positions), len(cells), 4, 3)
+        facets.append(projected(corners[visible]))
+        light.append(light_on(normals[visible]))
+        edges.append(_visible_edges(group, node_positions))
         # only the shape functions of nodes on the face are nonzero at a generic point of it
         on_face = np.abs(group.shape_functions(np.array([[0.31, 0.43]]))[0][0]) > _ON_FACE
-        nodes.append(
-            projected(at[visible.reshape(len(at), -1).all(axis=1)][:, on_face].reshape(-1, 3))
-        )
-    return Facets(np.concatenate(pieces), np.concatenate(light)), _line(lines), _dots(nodes)
+        visible_faces = visible.reshape(len(node_positions), -1).all(axis=1)
+        nodes.append(projected(node_positions[visible_faces][:, on_face].reshape(-1, 3)))
+    return Facets(np.concatenate(facets), np.concatenate(light)), _line(edges), _dots(nodes)
+
+
+def _cells() -> Floats:
+    """Return the corners of the cells of a divided face in its local coordinates, (cells, 4, 2)."""
+    corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
+    return np.array(
+        [(np.array([i, j]) + corners) / _FINE for i in range(_FINE) for j in range(_FINE)]
+    )
+
+
+def _visible_edges(group: Faces, node_positions: Floats) -> Floats:
+    """Return the edges of faces in the picture, with gaps where they face away, (points, 2)."""
+    edges, normals = _surface(group, node_positions, _edges(_FINE).reshape(-1, 2))
+    edges[normals @ VIEWER < 0.0] = np.nan
+    return _interrupted(projected(edges).reshape(-1, _FINE + 1, 2))
 
 
 def _edges(fine: int) -> Floats:
@@ -143,13 +161,12 @@ def _dots(parts: list[Floats]) -> Points:
     return Points(np.ascontiguousarray(x), np.ascontiguousarray(y), role="edge")
 
 
-def _surface(group: Faces, at: Floats, local: Floats) -> tuple[Floats, Floats]:
-    """Return points on each face and the unit normals there, (faces, points, 3), from
-    node and local coordinates.
+def _surface(group: Faces, node_positions: Floats, local: Floats) -> tuple[Floats, Floats]:
+    """Return points on each face and the unit normals there, (faces, points, 3), from the
+    positions of its nodes and local coordinates.
     """
-    values, slopes = group.shape_functions(local)
-    along = np.einsum("qak,eki->aeqi", slopes, at)
-    normal = np.cross(along[0], along[1])
-    return np.einsum("qk,eki->eqi", values, at), normal / np.linalg.norm(
-        normal, axis=-1, keepdims=True
-    )
+    values, derivatives = group.shape_functions(local)
+    points = np.einsum("qk,eki->eqi", values, node_positions)
+    tangents = np.einsum("qak,eki->aeqi", derivatives, node_positions)
+    normals = np.cross(tangents[0], tangents[1])
+    return points, normals / np.linalg.norm(normals, axis=-1, keepdims=True)

@@ -40,24 +40,8 @@ def model_chart() -> Chart:
         marks += _bar((0.5 * x * along, 0.5 * y * across), support["radius"], -thickness, foot)
     marks += _plate(length, width, thickness)
     marks += _sphere(case["sphere"]["radius"], case["drop"]["height"])
-    half, deep = 0.5 * length, 0.5 * width
-    marks += _dimension(
-        (-half, deep, 0.0), (half, deep, 0.0), (0.0, _OFFSET), _millimetres(length), "above"
-    )
-    marks += _dimension(
-        (-half, -deep, 0.0), (-half, deep, 0.0), (-_OFFSET, 0.0), _millimetres(width), "right"
-    )
-    half, deep = 0.5 * along, 0.5 * across
-    marks += _dimension(
-        (-half, -deep, foot),
-        (half, -deep, foot),
-        (0.0, -1.8 * _OFFSET),
-        _millimetres(along),
-        "below",
-    )
-    marks += _dimension(
-        (half, -deep, foot), (half, deep, foot), (1.8 * _OFFSET, 0.0), _millimetres(across), "left"
-    )
+    marks += _plate_dimensions(length, width)
+    marks += _bar_dimensions(along, across, foot)
     radius = _millimetres(support["radius"])
     caption = (
         "To scale but for the drop. The paper gives neither radius nor length of the bars: "
@@ -69,62 +53,88 @@ def model_chart() -> Chart:
     return Chart("fig3", "Figure 3: the rigid model", ((panel,),), caption, 3.9)
 
 
+def _plate_dimensions(length: float, width: float) -> list[Mark]:
+    """Return length and width of the plate, at its back and left edges."""
+    x = 0.5 * length
+    y = 0.5 * width
+    above = (0.0, _OFFSET)
+    left = (-_OFFSET, 0.0)
+    return [
+        *_dimension((-x, y, 0.0), (x, y, 0.0), above, _millimetres(length), "above"),
+        *_dimension((-x, -y, 0.0), (-x, y, 0.0), left, _millimetres(width), "right"),
+    ]
+
+
+def _bar_dimensions(along: float, across: float, foot: float) -> list[Mark]:
+    """Return the spacings of the bars, at the feet of those in front and on the right."""
+    x = 0.5 * along
+    y = 0.5 * across
+    below = (0.0, -1.8 * _OFFSET)
+    right = (1.8 * _OFFSET, 0.0)
+    return [
+        *_dimension((-x, -y, foot), (x, -y, foot), below, _millimetres(along), "below"),
+        *_dimension((x, -y, foot), (x, y, foot), right, _millimetres(across), "left"),
+    ]
+
+
 def _millimetres(value: float) -> str:
     return f"{1e3 * value:.5g} mm"
 
 
-def _bar(at: tuple[float, float], radius: float, top: float, foot: float) -> list[Mark]:
+def _bar(centre: tuple[float, float], radius: float, top: float, foot: float) -> list[Mark]:
     """Return the visible side of an upright cylinder, in strips by the light on them."""
     # from the left to the right edge, as they are seen
-    turn = -TURN + np.linspace(-np.pi, 0.0, _STRIPS + 1)
-    rim = np.column_stack([at[0] + radius * np.cos(turn), at[1] + radius * np.sin(turn)])
-    low, high = (projected(np.column_stack([rim, np.full(len(rim), z)])) for z in (foot, top))
-    middle = 0.5 * (turn[1:] + turn[:-1])
-    normals = np.column_stack([np.cos(middle), np.sin(middle), np.zeros(_STRIPS)])
+    angles = -TURN + np.linspace(-np.pi, 0.0, _STRIPS + 1)
+    x = centre[0] + radius * np.cos(angles)
+    y = centre[1] + radius * np.sin(angles)
+    low = projected(np.column_stack([x, y, np.full(len(x), foot)]))
+    high = projected(np.column_stack([x, y, np.full(len(x), top)]))
+    middles = 0.5 * (angles[1:] + angles[:-1])
+    normals = np.column_stack([np.cos(middles), np.sin(middles), np.zeros(_STRIPS)])
     strips = np.stack([low[:-1], low[1:], high[1:], high[:-1]], axis=1)
     return [Facets(strips, light_on(normals)), _line([high[:1], low, high[-1:]])]
 
 
 def _plate(length: float, width: float, thickness: float) -> list[Mark]:
     """Return the three visible faces of the plate with their edges, and its thickness."""
-    upper, lower = (
-        np.array(
-            [
-                (0.5 * x * length, 0.5 * y * width, z)
-                for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))
-            ]
-        )
-        for z in (0.0, -thickness)
-    )
-    top, front = projected(upper), projected(np.array([upper[0], upper[1], lower[1], lower[0]]))
-    side = projected(np.array([upper[1], upper[2], lower[2], lower[1]]))
-    light = light_on(np.array([(0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)]))
-    edges = [_line([face, face[:1]]) for face in (front, side, top)]
-    corner = projected(np.array([0.5 * length, 0.5 * width, -0.5 * thickness]))
-    words = Label(float(corner[0]), float(corner[1]), f"{_millimetres(thickness)} thick", "left")
-    return [Facets(np.array([front, side, top]), light), *edges, words]
+    upper = _rectangle(length, width, 0.0)
+    lower = _rectangle(length, width, -thickness)
+    front = np.concatenate([upper[[0, 1]], lower[[1, 0]]])
+    side = np.concatenate([upper[[1, 2]], lower[[2, 1]]])
+    faces = [projected(face) for face in (front, side, upper)]
+    normals = np.array([(0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)])
+    edges = [_line([face, face[:1]]) for face in faces]
+    corner = np.array([0.5 * length, 0.5 * width, -0.5 * thickness])
+    right, height = projected(corner).tolist()
+    label = Label(right, height, f"{_millimetres(thickness)} thick", "left")
+    return [Facets(np.array(faces), light_on(normals)), *edges, label]
+
+
+def _rectangle(length: float, width: float, height: float) -> Floats:
+    """Return the corners of a level rectangle about the z axis, (4, 3)."""
+    signs = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    return np.array([(0.5 * x * length, 0.5 * y * width, height) for x, y in signs])
 
 
 def _sphere(radius: float, drop: float) -> list[Mark]:
     """Return the sphere above the centre of the plate, with the height of its drop."""
-    (across, ground), (_, centre) = projected(
-        np.array([(0.0, 0.0, 0.0), (0.0, 0.0, _DRAWN_DROP)])
-    ).tolist()
-    beside = across + 2.6 * radius
+    touch, centre = projected(np.array([(0.0, 0.0, 0.0), (0.0, 0.0, _DRAWN_DROP)])).tolist()
+    x, ground = touch
+    height = centre[1]
+    beside = x + 2.6 * radius
     leads = [
-        np.array([(across, ground), (1.08 * beside, ground)]),
+        np.array([(x, ground), (1.08 * beside, ground)]),
         _GAP,
-        np.array([(across + radius, centre), (1.08 * beside, centre)]),
+        np.array([(x + radius, height), (1.08 * beside, height)]),
     ]
+    words = f"{text(drop, 'm', 1)}, not to scale"
     return [
-        Line(np.array([across, across]), np.array([ground, centre]), role="reference"),
-        Outline(across + radius * np.cos(_ROUND), centre + radius * np.sin(_ROUND), role="ball"),
+        Line(np.array([x, x]), np.array([ground, height]), role="reference"),
+        Outline(x + radius * np.cos(_ROUND), height + radius * np.sin(_ROUND), role="ball"),
         _line(leads, "muted"),
-        Arrow((beside, ground), (beside, centre), both=True),
-        Label(
-            beside, ground + 0.62 * (centre - ground), f"{text(drop, 'm', 1)}, not to scale", "left"
-        ),
-        Label(across - radius, centre, f"radius {_millimetres(radius)}", "right"),
+        Arrow((beside, ground), (beside, height), both=True),
+        Label(beside, ground + 0.62 * (height - ground), words, "left"),
+        Label(x - radius, height, f"radius {_millimetres(radius)}", "right"),
     ]
 
 
@@ -136,15 +146,13 @@ def _dimension(
     """
     ends = np.array([start, end])
     shift = np.array([*aside, 0.0])
+    leads = []
+    for point in ends:
+        leads += [projected(np.array([point, point + 1.15 * shift])), _GAP]
     first, last = projected(ends + shift).tolist()
-    leads = [
-        part
-        for near, far in zip(ends, ends + 1.15 * shift, strict=True)
-        for part in (projected(np.array([near, far])), _GAP)
-    ]
-    middle = 0.5 * (first[0] + last[0]), 0.5 * (first[1] + last[1])
     arrow = Arrow((first[0], first[1]), (last[0], last[1]), both=True)
-    return [_line(leads, "muted"), arrow, Label(*middle, words, anchor)]
+    label = Label(0.5 * (first[0] + last[0]), 0.5 * (first[1] + last[1]), words, anchor)
+    return [_line(leads, "muted"), arrow, label]
 
 
 _GAP = np.full((1, 2), np.nan)
@@ -157,13 +165,13 @@ def _line(parts: Sequence[Floats], role: str = "edge") -> Line:
 
 def _properties(case: Mapping[str, Any]) -> list[str]:
     """Return the materials of the bodies, gravity and the support in words."""
-    found: list[str] = []
-    for body in ("sphere", "plate"):
+    materials = []
+    for name, body in (("Sphere", "sphere"), ("plate", "plate")):
         material = case[body]["material"]
-        stiff = (
-            f"E = {material['youngs_modulus'] / 1e9:g} GPa, \u03bd = {material['poissons_ratio']:g}"
+        modulus = material["youngs_modulus"] / 1e9
+        ratio = material["poissons_ratio"]
+        materials.append(
+            f"{name}: {material['density']:g} kg/m³, E = {modulus:g} GPa, \u03bd = {ratio:g}"
         )
-        found.append(
-            f"{body.capitalize() if not found else body}: {material['density']:g} kg/m³, {stiff}"
-        )
-    return [*found, f"gravity: {case['drop']['gravity']:g} m/s²", "four bars, fixed to the ground"]
+    gravity = f"gravity: {case['drop']['gravity']:g} m/s²"
+    return [*materials, gravity, "four bars, fixed to the ground"]

@@ -126,7 +126,7 @@ def find_parts(names: Iterable[str]) -> list[ReportPart]:
 
 
 class RenderedPart(NamedTuple):
-    """A rendered part of the reproduction.
+    """A rendered part of the reproduction, computed or read from a folder.
 
     Parameters
     ----------
@@ -148,21 +148,35 @@ class RenderedPart(NamedTuple):
 
 def render_part(part: ReportPart, runs: Runs) -> RenderedPart:
     """Return a part, computed and rendered."""
-    section = part.section(runs) if part.section is not None else None
+    title = part.name
+    texts = []
+    rows: list[dict[str, Any]] = []
+    if part.section is not None:
+        section = part.section(runs)
+        title = section.title
+        texts.append(section_text(section))
+        rows = [_values_row(part.name, row) for row in section.rows]
     # it computes what it shows: an error of it ends the reproduction
     chart = part.chart(runs) if part.chart is not None else None
-    texts = [] if section is None else [section_text(section)]
     if chart is not None:
-        texts.append(chart_text(chart, heading=section is None))
-    title = (
-        section.title if section is not None else chart.title if chart is not None else part.name
-    )
-    return RenderedPart(
-        title,
-        "\n".join(texts),
-        [_values_row(part.name, row) for row in (section.rows if section else ())],
-        chart,
-    )
+        texts.append(chart_text(chart, heading=part.section is None))
+        if part.section is None:
+            title = chart.title
+    return RenderedPart(title, "\n".join(texts), rows, chart)
+
+
+def chapters_of(parts: Mapping[str, RenderedPart]) -> dict[str, list[RenderedPart]]:
+    """Return the chapters that have parts, in the order of the report."""
+    chapters = {
+        chapter: [parts[member.name] for member in members if member.name in parts]
+        for chapter, members in CHAPTERS.items()
+    }
+    return {chapter: members for chapter, members in chapters.items() if members}
+
+
+def missing_from(parts: Mapping[str, RenderedPart]) -> list[str]:
+    """Return the names of the parts that are not there, in the order of the report."""
+    return [name for name in PARTS if name not in parts]
 
 
 VALUE_COLUMNS = (
@@ -174,7 +188,8 @@ VALUE_COLUMNS = (
 
 def _values_row(part: str, row: ComparedValue) -> dict[str, Any]:
     """Return a compared value as a row of `values.csv`, in full precision."""
-    value, explanation = row.printed, row.explanation if row.verdict is Verdict.EXPLAINED else None
+    value = row.printed
+    explanation = row.explanation if row.verdict is Verdict.EXPLAINED else None
     return {
         "part": part,
         "name": value.name,

@@ -51,7 +51,8 @@ def recovery_chart(runs: Runs) -> Chart:
         The simulations.
     """
     found = recover_parameters(runs)
-    e, d = found.restitution, found.penetration
+    e = found.restitution
+    d = found.penetration
     given = printed("full_damping_penetration").value
     close = _Window(
         (e.value - _ZOOM[0], e.value + _ZOOM[0]), (d.value - _ZOOM[1], d.value + _ZOOM[1])
@@ -125,14 +126,16 @@ def _caption(found: RecoveredParameters) -> str:
 
 def _lines(found: RecoveredParameters, window: _Window) -> list[Mark]:
     """Return the lines of the evidence in a window, with their bands below them."""
-    (low, high), penetrations = window.restitutions, np.geomspace(*window.penetrations, _ROWS)
+    (low, high) = window.restitutions
+    penetrations = np.geomspace(*window.penetrations, _ROWS)
     bands: list[Mark] = []
     lines: list[Mark] = []
     for number, one in enumerate(_drawn_evidence(found)):
         restitution_alone, penetration_alone = found.alone[one.name]
         role = series(number)
         if restitution_alone is None and penetration_alone is not None:
-            value, half = penetration_alone.value, one.half_width * penetration_alone.deviation
+            value = penetration_alone.value
+            half = one.half_width * penetration_alone.deviation
             bands.append(
                 Spans(np.array([value - half]), np.array([value + half]), role=f"{role} band")
             )

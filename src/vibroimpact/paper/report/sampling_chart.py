@@ -42,7 +42,8 @@ def sampling_chart(runs: Runs) -> Chart:
     runs : Runs
         The simulations.
     """
-    step, spacing = output_step(), spacing_bound(runs)
+    step = output_step()
+    spacing = spacing_bound(runs)
     # the contact drawn below has sampling instants for both errors, and the largest error on the
     # printed grid
     candidates = [
@@ -77,53 +78,43 @@ def _errors(runs: Runs, quantity: str, step: float, spacing: float) -> Panel:
         for size in (0.0, spacing, step)
     }
     ends = np.concatenate([ranges[damping, spacing] for damping in DAMPINGS])
-    low, high = math.floor(ends.min()) - 1.0, math.ceil(ends.max()) + 1.0
-    places = {
-        damping: np.array(IMPACTS) + side
-        for damping, side in zip(DAMPINGS, (-_OFFSET, _OFFSET), strict=True)
+    low = math.floor(ends.min()) - 1.0
+    high = math.ceil(ends.max()) + 1.0
+    positions = {
+        damping: np.array(IMPACTS) + offset
+        for damping, offset in zip(DAMPINGS, (-_OFFSET, _OFFSET), strict=True)
     }
     marks: list[Mark] = []
-    for damping, at in places.items():
-        beyond = np.clip(ranges[damping, step], low - 1.0, high + 1.0)
-        marks.append(
-            _bars(
-                at,
-                beyond,
-                f"samples {1e3 * step:.2f} ms apart, beyond the picture",
-                "body",
-                _WIDTHS[0],
-            )
-        )
-    for damping, at in places.items():
+    for damping, x in positions.items():
+        clipped = np.clip(ranges[damping, step], low - 1.0, high + 1.0)
+        name = f"samples {1e3 * step:.2f} ms apart, beyond the picture"
+        marks.append(_bars(x, clipped, name, "body", _WIDTHS[0]))
+    for damping, x in positions.items():
         name = f"samples {1e6 * spacing:.0f} µs apart, {damping} damping"
-        marks.append(_bars(at, ranges[damping, spacing], name, _BARS[damping], _WIDTHS[1]))
-    for damping, at in places.items():
-        half, exact, gap = 0.5 * _WIDTHS[0], ranges[damping, 0.0][:, 0], np.full(len(at), np.nan)
-        marks.append(
-            Line(
-                np.column_stack([at - half, at + half, gap]).ravel(),
-                np.column_stack([exact, exact, gap]).ravel(),
-                "exact",
-            )
-        )
+        marks.append(_bars(x, ranges[damping, spacing], name, _BARS[damping], _WIDTHS[1]))
+    for damping, x in positions.items():
+        marks.append(_exact_line(x, ranges[damping, 0.0][:, 0]))
         texts = tuple(f"impact {impact}, {damping} damping" for impact in IMPACTS)
         values = np.array([table2_error(quantity, damping, impact).value for impact in IMPACTS])
-        marks.append(Points(at, values, "printed", "matched", texts))
-    impacts = Axis(
-        "Impact", range=(0.5, len(IMPACTS) + 0.5), ticks=tuple(float(impact) for impact in IMPACTS)
-    )
-    return Panel(
-        impacts,
-        Axis("Below the theory's by", "%", range=(low, high)),
-        tuple(marks),
-        f"Largest {quantity}",
-    )
+        marks.append(Points(x, values, "printed", "matched", texts))
+    ticks = tuple(float(impact) for impact in IMPACTS)
+    across = Axis("Impact", range=(0.5, len(IMPACTS) + 0.5), ticks=ticks)
+    up = Axis("Below the theory's by", "%", range=(low, high))
+    return Panel(across, up, tuple(marks), f"Largest {quantity}")
 
 
-def _bars(at: Floats, ranges: Floats, name: str, role: str, width: float) -> Bars:
-    return Bars(
-        at, ranges[:, 1] - ranges[:, 0], name, role, width, base=np.ascontiguousarray(ranges[:, 0])
-    )
+def _exact_line(x: Floats, values: Floats) -> Line:
+    """Return short strokes at values, as one line with gaps."""
+    half_width = 0.5 * _WIDTHS[0]
+    gap = np.full(len(x), np.nan)
+    across = np.column_stack([x - half_width, x + half_width, gap])
+    up = np.column_stack([values, values, gap])
+    return Line(across.ravel(), up.ravel(), "exact")
+
+
+def _bars(x: Floats, ranges: Floats, name: str, role: str, width: float) -> Bars:
+    heights = ranges[:, 1] - ranges[:, 0]
+    return Bars(x, heights, name, role, width, base=np.ascontiguousarray(ranges[:, 0]))
 
 
 def _contact(runs: Runs, damping: str, impact: int, step: float) -> Panel:
@@ -132,20 +123,19 @@ def _contact(runs: Runs, damping: str, impact: int, step: float) -> Panel:
     """
     marks: list[Mark] = []
     for quantity, role in _CURVES.items():
-        simulation, theory = (
-            contact_pulses(runs)[name, quantity, impact] for name in (damping, "theory")
-        )
-        scale = 100.0 / theory.value
-        marks.append(
-            Line(simulation.times, scale * simulation.values, f"{quantity} of the simulation", role)
-        )
+        simulation = contact_pulses(runs)[damping, quantity, impact]
+        # per cent of the theory's peak
+        scale = 100.0 / contact_pulses(runs)["theory", quantity, impact].value
+        name = f"{quantity} of the simulation"
+        marks.append(Line(simulation.times, scale * simulation.values, name, role))
         value = 100.0 - table2_error(quantity, damping, impact).value
-        moments = np.array(implied_instants(runs, quantity, damping, impact))
-        marks.append(Points(moments, np.full(len(moments), value), f"printed {quantity}", role))
+        instants = np.array(implied_instants(runs, quantity, damping, impact))
+        marks.append(Points(instants, np.full(len(instants), value), f"printed {quantity}", role))
         times, values = grid_samples(runs, damping, step, quantity, impact)
         marks.append(Points(times, scale * values, f"output every {1e3 * step:.2f} ms", "muted"))
-    end = float(simulation.times[-1])
-    marks.insert(0, Spans(np.array([0.0]), np.array([end]), "in contact"))
-    time = Axis("Time since first touch", "s", range=(-0.03 * end, 1.03 * end))
+    duration = float(simulation.times[-1])
+    marks.insert(0, Spans(np.array([0.0]), np.array([duration]), "in contact"))
+    across = Axis("Time since first touch", "s", range=(-0.03 * duration, 1.03 * duration))
+    up = Axis("Of the theory's peak", "%", range=(0.0, 108.0))
     title = f"Impact {impact}, {damping} damping, in parts of the theory's peaks"
-    return Panel(time, Axis("Of the theory's peak", "%", range=(0.0, 108.0)), tuple(marks), title)
+    return Panel(across, up, tuple(marks), title)

@@ -63,24 +63,26 @@ def unresolved_chart(runs: Runs) -> Chart:
     rows = []
     for name, title in zip(COMPARED, _TITLES, strict=True):
         marks = {kind: _marks(runs, kind, name, step) for kind in (2, 3)}
-        top = max(
-            float(np.max(part))
-            for some in marks.values()
-            for mark in some
-            for part in upwards(mark)
+        largest = max(
+            float(np.max(values))
+            for of_kind in marks.values()
+            for mark in of_kind
+            for values in upwards(mark)
         )
-        up = Axis(*_AXES[name], range=(0.0, _HEADROOM * top))
-        rows.append(
-            tuple(Panel(across, up, some, f"Type {kind}: {title}") for kind, some in marks.items())
-        )
-    whole = {kind: resolved_impact(superposed(runs, kind, "coarse")) for kind in (2, 3)}
+        up = Axis(*_AXES[name], range=(0.0, _HEADROOM * largest))
+        panels = [
+            Panel(across, up, of_kind, f"Type {kind}: {title}") for kind, of_kind in marks.items()
+        ]
+        rows.append(tuple(panels))
+    misfit = float(best.misfit(paper_impact(runs, 2))[0])
+    contact_time = resolved_impact(superposed(runs, 2, "coarse"))["duration_s"]
     caption = (
         "Up to steps of 0.19 ms the method takes the more energy the longer they are. On "
         "the coarse mesh the three numbers of Type 2 "
         f"come nearest to the printed ones in steps of {digits(1e6 * step, 2)} µs (off by "
-        f"{digits(100.0 * float(best.misfit(paper_impact(runs, 2))[0]), 2)} %); the "
+        f"{digits(100.0 * misfit, 2)} %); the "
         "resolved contact lasts "
-        f"{digits(1e6 * whole[2]['duration_s'], 3)} µs. Bands: {len(PHASES)} places of the "
+        f"{digits(1e6 * contact_time, 3)} µs. Bands: {len(PHASES)} places of the "
         "touch in a step."
     )
     return Chart(
@@ -98,15 +100,17 @@ def _marks(runs: Runs, kind: int, name: str, step: float) -> tuple[Mark, ...]:
     """
     marks: list[Mark] = []
     for mesh in MESHES:
-        problem, (role, band) = superposed(runs, kind, mesh), _ROLES[mesh]
-        swept = sweep_steps(problem)
-        values = swept.found[name]
-        marks.append(Band(swept.steps, values.min(axis=1), values.max(axis=1), role=band))
-        marks.append(Line(swept.steps, swept.median(name), f"{mesh} mesh, median and range", role))
-        limit = np.array([resolved_impact(problem)[name]])
-        marks.append(Points(np.array([_LIMIT * STEPS[0]]), limit, f"{mesh} mesh, resolved", role))
+        problem = superposed(runs, kind, mesh)
+        line_role, band_role = _ROLES[mesh]
+        sweep = sweep_steps(problem)
+        values = sweep.found[name]
+        median = sweep.median(name)
+        marks.append(Band(sweep.steps, values.min(axis=1), values.max(axis=1), role=band_role))
+        marks.append(Line(sweep.steps, median, f"{mesh} mesh, median and range", line_role))
+        marker = np.array([_LIMIT * STEPS[0]])
+        resolved = np.array([resolved_impact(problem)[name]])
+        marks.append(Points(marker, resolved, f"{mesh} mesh, resolved", line_role))
     marks.append(Level(paper_impact(runs, kind)[name], "printed", "matched"))
-    marks.append(
-        Level(step, f"step fitted to Type 2, {digits(1e6 * step, 2)} µs", "dotted", upright=True)
-    )
+    fitted = f"step fitted to Type 2, {digits(1e6 * step, 2)} µs"
+    marks.append(Level(step, fitted, "dotted", upright=True))
     return tuple(marks)

@@ -95,7 +95,8 @@ def study_axes(study: Study) -> list[StudyAxis]:
 
 def _axis(key: str, unit: str, meaning: str, values: NDArray[Any]) -> StudyAxis:
     if unit == "rad":
-        unit, values = "deg", np.degrees(values).round(_DIGITS_OF_ANGLES)
+        unit = "deg"
+        values = np.degrees(values).round(_DIGITS_OF_ANGLES)
     return StudyAxis(key, key_words(key, meaning), unit, values)
 
 

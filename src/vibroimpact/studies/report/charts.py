@@ -18,12 +18,11 @@ from vibroimpact.studies.report.outputs import (
     Output,
     drawn_outputs,
     independent_drops,
-    study_outputs,
 )
 from vibroimpact.studies.report.over_axes import MOST_AXES, over_axes_chart
 from vibroimpact.studies.report.restitution import restitution_chart
 from vibroimpact.studies.report.sensitivity_chart import sensitivity_chart
-from vibroimpact.studies.report.sensitivity_table import Sensitivity, sensitivity_of
+from vibroimpact.studies.report.sensitivity_table import Sensitivity
 from vibroimpact.studies.report.signals import signal_makers
 from vibroimpact.studies.report.slip_chart import slip_chart
 from vibroimpact.studies.study import Study
@@ -34,7 +33,7 @@ _MOST_RESULTS = 6  # of a chart of the sensitivity
 
 
 def study_charts(
-    study: Study, outputs: list[Output] | None = None, found: Sensitivity | None = None
+    study: Study, outputs: list[Output], sensitivity: Sensitivity | None
 ) -> list[Chart]:
     """Return the charts of a study in the order of its report.
 
@@ -42,10 +41,10 @@ def study_charts(
     ----------
     study : Study
         The completed study.
-    outputs : list of Output, optional
-        Its results, where they are known already.
-    found : Sensitivity, optional
-        Their sensitivity to the keys, where it is known already.
+    outputs : list of Output
+        Its results.
+    sensitivity : Sensitivity, optional
+        The sensitivity to the keys of those that describe the response, if there is one.
 
     Returns
     -------
@@ -54,56 +53,31 @@ def study_charts(
         the name of each result; `restitution`, `slip_map` of oblique impacts that were kept,
         `sensitivity`, and one per sensor whose signals were kept. Left out is what has nothing to
         show.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> import vibroimpact as vi
-    >>> case = {
-    ...     "sphere": {"radius": "25 mm", "material": "granite"},
-    ...     "plate": {"material": "steel"},
-    ...     "drop": {"height": 1.0},
-    ...     "contact": {"law": "flores", "restitution": 0.7},
-    ...     "sweep": {"over": {"drop.height": [1.0, 2.0]}},
-    ... }
-    >>> with tempfile.TemporaryDirectory() as place:
-    ...     study = vi.studies.load_study(
-    ...         vi.studies.run_sweep(vi.studies.sweep_of(case), f"{place}/heights")
-    ...     )
-    ...     [chart.name for chart in study_charts(study)]
-    ['curves', 'restitution']
     """
-    if outputs is None:
-        outputs = study_outputs(study)
-        found = sensitivity_of(study, [one for one in outputs if one.is_informative])
     drawn = drawn_outputs(outputs)
-    axes = [
-        axis
-        for axis in study_axes(study)
-        if (len(axis.values) > 1 if study.is_grid else axis.varies)
-    ]
     makers: dict[str, _Maker] = {}
-    if drawn and axes:
-        makers |= (
-            _of_grid(study, axes, drawn, found)
-            if study.is_grid
-            else _of_samples(study, axes, drawn)
+    if drawn and study.is_grid:
+        makers |= _of_grid(study, drawn, sensitivity)
+    elif drawn:
+        makers |= _of_samples(study, drawn)
+    makers["restitution"] = partial(restitution_chart, study)
+    makers["slip_map"] = partial(slip_chart, study)
+    if sensitivity is not None:
+        makers["sensitivity"] = partial(
+            sensitivity_chart, study, sensitivity, drawn[:_MOST_RESULTS]
         )
-    makers |= {
-        "restitution": partial(restitution_chart, study),
-        "slip_map": partial(slip_chart, study),
-    }
-    if found is not None:
-        makers["sensitivity"] = partial(sensitivity_chart, study, found, drawn[:_MOST_RESULTS])
     return made_charts(makers | signal_makers(study))
 
 
 def _of_grid(
-    study: Study, axes: list[StudyAxis], drawn: list[Output], found: Sensitivity | None
+    study: Study, drawn: list[Output], sensitivity: Sensitivity | None
 ) -> dict[str, _Maker]:
+    axes = [axis for axis in study_axes(study) if len(axis.values) > 1]
+    if not axes:
+        return {}
     if len(axes) == 1:
         return {"curves": partial(impact_curves, study, axes[0], drawn)}
-    first, second = _two_axes(axes, drawn, found)
+    first, second = _two_axes(axes, drawn, sensitivity)
     # lines for names rather than numbers, and for the fewer levels
     each = min(
         (first, second),
@@ -111,16 +85,18 @@ def _of_grid(
     )
     makers: dict[str, _Maker] = {}
     if len(each.values) <= MOST_LINES:
-        makers["curves"] = partial(
-            level_curves, study, axes, drawn, second if each is first else first, each
-        )
+        across = second if each is first else first
+        makers["curves"] = partial(level_curves, study, axes, drawn, across, each)
     else:
         makers["maps"] = partial(maps_chart, study, axes, drawn, first, second)
     return makers | (_over_axes(study, axes, drawn) if len(axes) > 2 else {})
 
 
-def _of_samples(study: Study, axes: list[StudyAxis], drawn: list[Output]) -> dict[str, _Maker]:
+def _of_samples(study: Study, drawn: list[Output]) -> dict[str, _Maker]:
+    axes = [axis for axis in study_axes(study) if axis.varies]
     makers: dict[str, _Maker] = {}
+    if not axes:
+        return makers
     if independent_drops(study) >= FEWEST and study.design != "zip":
         makers["inputs"] = partial(inputs_chart, study, axes[:MOST_AXES])
         makers["outputs"] = partial(outputs_chart, study, drawn)
@@ -137,13 +113,14 @@ def _over_axes(study: Study, axes: list[StudyAxis], drawn: list[Output]) -> dict
 
 
 def _two_axes(
-    axes: list[StudyAxis], drawn: list[Output], found: Sensitivity | None
+    axes: list[StudyAxis], drawn: list[Output], sensitivity: Sensitivity | None
 ) -> tuple[StudyAxis, StudyAxis]:
     """Return the two axes of the largest effect on the first result if known, else the
     first two.
     """
-    strength = None if found is None else found.strength.get(drawn[0].name)
+    strength = None if sensitivity is None else sensitivity.strength.get(drawn[0].name)
     if len(axes) == 2 or strength is None:
         return axes[0], axes[1]
-    first, second = sorted(np.argsort(np.nan_to_num(strength), kind="stable")[-2:].tolist())
+    strongest = np.argsort(np.nan_to_num(strength), kind="stable")[-2:]
+    first, second = sorted(strongest.tolist())
     return axes[first], axes[second]

@@ -43,11 +43,9 @@ def impact_curves(study: Study, axis: StudyAxis, outputs: list[Output]) -> Chart
     outputs : list of Output
         The results to draw.
     """
-    order, across, number = (
-        ascending_order(axis, _MOST),
-        key_axis(axis),
-        min(_impacts_kept(study), _MOST_IMPACTS),
-    )
+    order = ascending_order(axis, _MOST)
+    across = key_axis(axis)
+    number = min(_impacts_kept(study), _MOST_IMPACTS)
     table = {
         one.name: on_grid(study, _column(study, one) or one.name)[order].reshape(len(order), -1)
         for one in outputs
@@ -89,7 +87,9 @@ def level_curves(
     over, each : StudyAxis
         The axis along which they are drawn, and that of the lines.
     """
-    order, levels, across = ascending_order(over, _MOST), ascending_order(each), key_axis(over)
+    order = ascending_order(over, _MOST)
+    levels = ascending_order(each)
+    across = key_axis(over)
     names = [
         f"{each.words} {level_words(each, level)}" if each.numeric else level_words(each, level)
         for level in levels
@@ -155,7 +155,8 @@ def _texts_of_impact(
         return ()
     told = {}
     for output in outputs:
-        column, values = _column(study, output), table[output.name]
+        column = _column(study, output)
+        values = table[output.name]
         told[output.short if column else output.title] = (
             output.unit,
             values[:, min(impact, values.shape[1] - 1)],

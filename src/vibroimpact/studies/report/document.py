@@ -1,11 +1,11 @@
-"""What `sweep --json` prints: the numbers of drops, the tables of the report, and the doubts."""
+"""A study as data: the numbers of drops, the tables of the report, and the doubts."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from vibroimpact.studies.report.outputs import study_outputs
-from vibroimpact.studies.report.sensitivity_table import informative_sensitivity
+from vibroimpact.studies.report.outputs import Output
+from vibroimpact.studies.report.sensitivity_table import Sensitivity
 from vibroimpact.studies.report.tables import (
     doubt_sentences,
     percentiles_rows,
@@ -15,19 +15,19 @@ from vibroimpact.studies.report.tables import (
 from vibroimpact.studies.study import Study
 
 
-def study_document(study: Study) -> dict[str, Any]:
+def study_document(
+    study: Study, outputs: list[Output], sensitivity: Sensitivity | None
+) -> dict[str, Any]:
     """Return the outcome of a study: the rows of `percentiles.csv` and `sensitivity.csv`,
     failures, exceeded limits and doubts.
     """
-    outputs = study_outputs(study)
-    found = informative_sensitivity(study, outputs)
     return {
         "name": study.name,
         "version": study.version,
         "study": {"design": study.design, "drops": study.size, "failed": len(study.failures)},
-        "reasons": [{"drops": number, "reason": words} for number, words in reasons(study)],
+        "reasons": [{"drops": number, "reason": reason} for number, reason in reasons(study)],
         "percentiles": percentiles_rows(outputs),
-        "sensitivity": sensitivity_rows(found) if found is not None else [],
-        "limits": [one._asdict() for one in study.doubts],
+        "sensitivity": [] if sensitivity is None else sensitivity_rows(sensitivity),
+        "limits": [limit._asdict() for limit in study.doubts],
         "doubts": doubt_sentences(study),
     }

@@ -50,14 +50,12 @@ def outputs_chart(study: Study, outputs: list[Output]) -> Chart:
     panels = []
     for output in outputs:
         values = independent_values(study, output.name)
-        low, _, middle, _, high = output.spread.percentiles
-        edges: list[Mark] = [
-            Level(edge, "5 and 95 %", "mark line", upright=True) for edge in (low, high)
-        ]
-        marks = (
+        low, _, median, _, high = output.spread.percentiles
+        marks: tuple[Mark, ...] = (
             _histogram(values[np.isfinite(values)], log=is_log(output)),
-            *edges,
-            Level(middle, "median", "main", upright=True),
+            Level(low, "5 and 95 %", "mark line", upright=True),
+            Level(high, "5 and 95 %", "mark line", upright=True),
+            Level(median, "median", "main", upright=True),
         )
         panels.append(Panel(result_axis(output, output.title), Axis("Drops", integer=True), marks))
     return Chart(
@@ -77,11 +75,9 @@ def _of_what(study: Study) -> str:
 
 def _histogram(values: Floats, *, log: bool) -> Bars:
     number = int(np.clip(2.0 * np.cbrt(len(values)), 8, _MOST_BINS))
-    low, high = float(values.min()), float(values.max())
-    edges = np.unique(
-        np.geomspace(low, high, number + 1)
-        if log and low > 0.0
-        else np.linspace(low, high, number + 1)
-    )
+    low = float(values.min())
+    high = float(values.max())
+    spaced = np.geomspace if log and low > 0.0 else np.linspace
+    edges = np.unique(spaced(low, high, number + 1))
     counts, _ = np.histogram(values, edges)
     return Bars(edges, counts.astype(float), role="pale")

@@ -62,7 +62,8 @@ def range_text(axis: StudyAxis) -> str:
         names = list(dict.fromkeys(axis.values))
         more = f", and {len(names) - 6} more" if len(names) > 6 else ""
         return ", ".join(shortened(visible(str(name)), 40) for name in names[:6]) + more
-    low, high = float(np.min(axis.values)), float(np.max(axis.values))
+    low = float(np.min(axis.values))
+    high = float(np.max(axis.values))
     scale = multiple(axis.unit, [low, high])
     return f"{digits(low / scale.size)} to {digits(high / scale.size)}\u00a0{scale.unit}".rstrip(
         "\u00a0"

@@ -37,8 +37,10 @@ def maps_chart(
     """
     if not up.numeric and across.numeric:  # names fit better below
         across, up = up, across
-    columns, rows = ascending_order(across, _MOST), ascending_order(up, _MOST)
-    x, y = key_axis(across), key_axis(up)
+    columns = ascending_order(across, _MOST)
+    rows = ascending_order(up, _MOST)
+    x = key_axis(across)
+    y = key_axis(up)
     texts: tuple[str, ...] = ()
     if len(axes) == 2 and study.size <= _MOST_TOLD:
         told = np.array(

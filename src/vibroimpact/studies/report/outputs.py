@@ -71,10 +71,10 @@ def output_names(study: Study) -> list[str]:
     return [name for name in (*drawn, *sensors, *others) if name in study.shapes]
 
 
-def study_outputs(study: Study, most: int | None = None) -> list[Output]:
-    """Return the results, or the first `most` of them, with their statistics."""
+def study_outputs(study: Study) -> list[Output]:
+    """Return the results with their statistics, the most important first."""
     found = []
-    for name in output_names(study)[:most]:
+    for name in output_names(study):
         title = (
             PEAK_TABLE[name].title
             if name in PEAK_TABLE

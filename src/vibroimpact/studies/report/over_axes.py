@@ -55,7 +55,8 @@ def over_axes_chart(
     drawn = sampled_output(study, output.name, MOST_DROPS)
     heights = [drawn[group.chosen] for group in groups]
     chosen = sampled_places(study, _BANDED)
-    numbers, values = drop_numbers(study, *chosen), sampled_output(study, output.name, _BANDED)
+    numbers = drop_numbers(study, *chosen)
+    values = sampled_output(study, output.name, _BANDED)
     panels = []
     for axis in axes[:MOST_AXES]:
         marks: list[Mark] = [

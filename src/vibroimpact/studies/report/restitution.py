@@ -50,41 +50,42 @@ def summarize_restitution(study: Study) -> RestitutionSummary:
     """Return the summary of prescribed and achieved restitution at the first impacts."""
     if "first_restitution_achieved" not in study.shapes:
         return RestitutionSummary(None, None, math.nan)
-    found = independent_values(study, "first_restitution_achieved")
-    achieved = _extremes(found)
+    achieved = independent_values(study, "first_restitution_achieved")
+    achieved_range = _extremes(achieved)
     if "first_restitution_asked" not in study.shapes:
-        return RestitutionSummary(None, achieved, math.nan)
-    wanted = independent_values(study, "first_restitution_asked")
-    asked = _extremes(wanted)
-    found -= wanted
-    del wanted  # free memory: there may be millions of values
-    found = found[np.isfinite(found)]
-    return RestitutionSummary(
-        asked, achieved, float(np.median(found, overwrite_input=True)) if len(found) else math.nan
-    )
+        return RestitutionSummary(None, achieved_range, math.nan)
+    asked = independent_values(study, "first_restitution_asked")
+    asked_range = _extremes(asked)
+    # in place: there may be millions of values
+    differences = np.subtract(achieved, asked, out=achieved)
+    del asked
+    differences = differences[np.isfinite(differences)]
+    median = math.nan
+    if len(differences):
+        median = float(np.median(differences, overwrite_input=True))
+    return RestitutionSummary(asked_range, achieved_range, median)
 
 
 def _extremes(values: Floats) -> tuple[float, float] | None:
     """Return minimum and maximum of the finite values."""
-    low, high = float(np.fmin.reduce(values)), float(np.fmax.reduce(values))
+    low = float(np.fmin.reduce(values))
+    high = float(np.fmax.reduce(values))
     return (low, high) if math.isfinite(low) else None
 
 
-def restitution_sentence(found: RestitutionSummary) -> str:
+def restitution_sentence(summary: RestitutionSummary) -> str:
     """Return a sentence on prescribed and achieved restitution; "" if there is no
     achieved value.
     """
-    if found.achieved is None:
+    if summary.achieved is None:
         return ""
-    achieved = f"the first impacts achieved {_ends(found.achieved)}"
-    if found.asked is None:
+    achieved = f"the first impacts achieved {_ends(summary.achieved)}"
+    if summary.asked is None:
         return f"No restitution is asked of the law; {achieved}."
-    median = (
-        fixed(found.difference, 4) if found.difference <= 0.0 else f"+{fixed(found.difference, 4)}"
-    )
+    sign = "" if summary.difference <= 0.0 else "+"
     return (
-        f"Restitution asked: {_ends(found.asked)}; {achieved}. The median difference, achieved "
-        f"less asked, is {median}."
+        f"Restitution asked: {_ends(summary.asked)}; {achieved}. The median difference, achieved "
+        f"less asked, is {sign}{fixed(summary.difference, 4)}."
     )
 
 
@@ -107,70 +108,75 @@ def restitution_chart(study: Study) -> Chart | None:
     If all prescribed values are equal, the achieved restitution is drawn over the approach speed
     instead; None if none is prescribed.
     """
-    found = _impacts(study)
-    if not len(found.drop):
+    impacts = _impacts(study)
+    if not len(impacts.drop):
         return None
-    several = bool(found.impact.max() > 1)
-    told = {
-        "Restitution asked": ("1", found.asked),
-        "Restitution achieved": ("1", found.achieved),
-        "Approach speed": ("m/s", found.speed),
-    }
-    texts = drop_texts(study, told, found.drop, found.impact if several else None)
-    others = (
-        {"Impact": np.array([f"impact {one}" for one in found.impact.tolist()], dtype=object)}
-        if several
-        else {}
-    )
-    groups = grouped(
-        study, [axis for axis in study_axes(study) if axis.varies], found.drop, texts, others
-    )
-    achieved = Axis("Restitution achieved")
-    fast = Axis("Approach speed", "m/s", log=is_spread_by_factors(np.unique(found.speed)))
-    least, most = float(found.asked.min()), float(found.asked.max())
-    if most > least:
-        ends = np.array(
-            [min(least, float(found.achieved.min())), max(most, float(found.achieved.max()))]
-        )
-        over: tuple[Mark, ...] = (
-            Line(ends, ends, "as asked", "reference"),
-            *_points(groups, found.asked, found.achieved),
-        )
-        less: tuple[Mark, ...] = (
-            Level(0.0, "as asked", "reference"),
-            *_points(groups, found.speed, found.achieved - found.asked),
-        )
-        panels = [
-            Panel(Axis("Restitution asked"), achieved, over, "Achieved over asked"),
-            Panel(fast, Axis("Difference of restitution"), less, "Achieved less asked"),
-        ]
-    else:
-        panels = [
-            Panel(
-                fast,
-                achieved,
-                (
-                    Level(most, "as asked", "reference"),
-                    *_points(groups, found.speed, found.achieved),
-                ),
-            )
-        ]
-    words = (
-        f"Each mark is an impact, of the first {_MOST_IMPACTS} of a drop at most"
-        if several
-        else "Each mark is the first impact of a drop"
-    )
+    marks = "Each mark is the first impact of a drop"
+    if impacts.impact.max() > 1:
+        marks = f"Each mark is an impact, of the first {_MOST_IMPACTS} of a drop at most"
     caption = (
-        f"{words}; dashed: the restitution asked of the law. The restitution achieved may "
+        f"{marks}; dashed: the restitution asked of the law. The restitution achieved may "
         "depend on the speed of the impact."
     )
+    panels = _panels(impacts, _groups(study, impacts))
     return Chart("restitution", "Restitution asked and achieved", in_rows(panels), caption, 3.0)
+
+
+def _groups(study: Study, impacts: _Impacts) -> list[Group]:
+    """Return the impacts in groups of a colour each, with their labels."""
+    quantities = {
+        "Restitution asked": ("1", impacts.asked),
+        "Restitution achieved": ("1", impacts.achieved),
+        "Approach speed": ("m/s", impacts.speed),
+    }
+    axes = [axis for axis in study_axes(study) if axis.varies]
+    if impacts.impact.max() == 1:
+        return grouped(study, axes, impacts.drop, drop_texts(study, quantities, impacts.drop), {})
+    texts = drop_texts(study, quantities, impacts.drop, impacts.impact)
+    names = np.array([f"impact {number}" for number in impacts.impact.tolist()], dtype=object)
+    return grouped(study, axes, impacts.drop, texts, {"Impact": names})
+
+
+def _panels(impacts: _Impacts, groups: list[Group]) -> list[Panel]:
+    """Return the panels; a single one over the speed if all impacts are asked the same."""
+    achieved = Axis("Restitution achieved")
+    speed = Axis("Approach speed", "m/s", log=is_spread_by_factors(np.unique(impacts.speed)))
+    least = float(impacts.asked.min())
+    largest = float(impacts.asked.max())
+    if least == largest:
+        over_speed: tuple[Mark, ...] = (
+            Level(largest, "as asked", "reference"),
+            *_points(groups, impacts.speed, impacts.achieved),
+        )
+        return [Panel(speed, achieved, over_speed)]
+    ends = np.array(
+        [min(least, float(impacts.achieved.min())), max(largest, float(impacts.achieved.max()))]
+    )
+    over_asked: tuple[Mark, ...] = (
+        Line(ends, ends, "as asked", "reference"),
+        *_points(groups, impacts.asked, impacts.achieved),
+    )
+    differences: tuple[Mark, ...] = (
+        Level(0.0, "as asked", "reference"),
+        *_points(groups, impacts.speed, impacts.achieved - impacts.asked),
+    )
+    return [
+        Panel(Axis("Restitution asked"), achieved, over_asked, "Achieved over asked"),
+        Panel(speed, Axis("Difference of restitution"), differences, "Achieved less asked"),
+    ]
 
 
 def _points(groups: list[Group], across: Floats, up: Floats) -> list[Points]:
     return [
-        Points(across[one.chosen], up[one.chosen], one.name, one.role, one.texts, one.keys)
-        for one in groups
+        Points(
+            across[group.chosen],
+            up[group.chosen],
+            group.name,
+            group.role,
+            group.texts,
+            group.keys,
+        )
+        for group in groups
     ]
 
 
@@ -178,7 +184,8 @@ def _impacts(study: Study) -> _Impacts:
     """Return the first impacts of some drops that have both values; the first one of each
     if no others were kept.
     """
-    names, each = ("restitution_asked", "restitution_achieved", "approach_speed_m_s"), 1
+    names = ("restitution_asked", "restitution_achieved", "approach_speed_m_s")
+    each = 1
     if all(name in study.shapes and study.shapes[name][-1] for name in names):
         each = min(study.shapes[names[0]][-1], _MOST_IMPACTS)
     else:
@@ -194,17 +201,15 @@ def _impacts(study: Study) -> _Impacts:
         sampled_output(study, name, _MOST // each).reshape(len(drops), -1)[:, :each].ravel()
         for name in names
     ]
-    there = np.isfinite(columns[0]) & np.isfinite(columns[1])
-    asked, achieved, speed = (column[there] for column in columns)
+    with_both = np.isfinite(columns[0]) & np.isfinite(columns[1])
     return _Impacts(
-        np.repeat(drops, each)[there],
-        np.tile(np.arange(1, each + 1), len(drops))[there],
-        asked,
-        achieved,
-        speed,
+        np.repeat(drops, each)[with_both],
+        np.tile(np.arange(1, each + 1), len(drops))[with_both],
+        *(column[with_both] for column in columns),
     )
 
 
 def _ends(ends: tuple[float, float]) -> str:
-    low, high = fixed(ends[0], 4), fixed(ends[1], 4)
+    low = fixed(ends[0], 4)
+    high = fixed(ends[1], 4)
     return low if low == high else f"{low} to {high}"

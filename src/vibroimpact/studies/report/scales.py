@@ -62,7 +62,8 @@ def result_axis(output: Output, label: str) -> Axis:
 
 def is_log(output: Output) -> bool:
     """Return whether a result is shown on a logarithmic scale, as it spans a large ratio."""
-    low, high = output.spread.percentiles[0], output.spread.percentiles[-1]
+    low = output.spread.percentiles[0]
+    high = output.spread.percentiles[-1]
     return low > 0.0 and high > _FACTORS * low
 
 
@@ -120,7 +121,8 @@ def is_spread_by_factors(values: NDArray[Any]) -> bool:
         or even[-1] < 3.0 * even[0]
     ):
         return False
-    by_steps, by_factors = _off_a_line(even), _off_a_line(np.log(even))
+    by_steps = _off_a_line(even)
+    by_factors = _off_a_line(np.log(even))
     return bool(by_factors < by_steps and (by_factors < 0.1 or even[-1] > 8.0 * even[0]))
 
 

@@ -48,31 +48,26 @@ def sensitivity_chart(study: Study, found: Sensitivity, outputs: list[Output]) -
     outputs : list of Output
         The results to draw.
     """
-    shown = [one for one in outputs if one.name in found.rows]
+    shown = [output for output in outputs if output.name in found.rows]
     if not shown or len(found.keys) < 2:
         return None
     # sort the keys by their effect summed over all results, the largest at the top
-    order = np.argsort(
-        np.nansum([found.strength[one.name] for one in shown], axis=0), kind="stable"
-    )[-_MOST_KEYS:]
+    effects = np.nansum([found.strength[output.name] for output in shown], axis=0)
+    order = np.argsort(effects, kind="stable")[-_MOST_KEYS:]
     axes = {axis.key: axis for axis in study_axes(study)}
     keys = [axes[found.keys[key]] for key in order]
     names = tuple(shortened(visible(sentence(axis.words)), 60) for axis in keys)
-    panels, common = (
-        [],
-        Axis(*_LABELS[found.way], range=(-1.05, 1.05) if found.way == RANKS else None),
-    )
+    panels = []
+    common = Axis(*_LABELS[found.way], range=(-1.05, 1.05) if found.way == RANKS else None)
     up = Axis(names=tuple(shortened(name, _LETTERS) for name in names))
     for output in shown:
         # ranges may differ widely between results
         across = Axis(*_LABELS[RANGES]) if found.way == RANGES else common
         marks = (*_bars(found, output, order, names), Level(0.0, role="main", upright=True))
         panels.append(Panel(across, up, marks, shortened(visible(output.short), 40)))
-    cut = (
-        ""
-        if len(found.keys) <= _MOST_KEYS
-        else f" The {_MOST_KEYS} of {len(found.keys)} keys with the largest effects are drawn."
-    )
+    cut = ""
+    if len(found.keys) > _MOST_KEYS:
+        cut = f" The {_MOST_KEYS} of {len(found.keys)} keys with the largest effects are drawn."
     caption = f"{_WORDS[found.way]}{cut} {keys_told(keys[::-1])}"
     return Chart("sensitivity", "Sensitivity", in_rows(panels), caption, 0.7 + 0.28 * len(order))
 
@@ -82,7 +77,8 @@ def _bars(
 ) -> tuple[Mark, ...]:
     """Return the bars of one result, one for each of the named keys."""
     lying = partial(Bars, lying=True, texts=names)
-    row, places = found.rows[output.name], np.arange(float(len(order)))
+    row = found.rows[output.name]
+    places = np.arange(float(len(order)))
     if found.way == SOBOL:
         sides = (
             (0.18, "first_order", "alone (first order)", "detail"),

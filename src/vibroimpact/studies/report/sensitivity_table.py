@@ -67,11 +67,9 @@ def sensitivity_of(study: Study, outputs: list[Output]) -> Sensitivity | None:
         return None
     if study.design == "saltelli":
         return _indices(study, axes, outputs)
-    return (
-        _ranges(study, [axis for axis in axes if len(axis.values) > 1], outputs)
-        if study.is_grid
-        else _ranks(study, varying, outputs)
-    )
+    if study.is_grid:
+        return _ranges(study, [axis for axis in axes if len(axis.values) > 1], outputs)
+    return _ranks(study, varying, outputs)
 
 
 def informative_sensitivity(study: Study, outputs: list[Output]) -> Sensitivity | None:
@@ -90,67 +88,72 @@ def strongest(found: Sensitivity, output: str) -> str | None:
 
 
 def _indices(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensitivity | None:
-    rows, strength, refused, partly = {}, {}, [], {}
+    rows = {}
+    strength = {}
+    refused = []
+    left_out = {}
     block = study.size // (2 + len(axes))
     points = min(block, _POINTS)
     for output in outputs:
         # failed drops are NaN, and their points are omitted
-        parts = [
+        blocks = [
             read_output(study, output.name, slice(first, first + points))
             for first in range(0, study.size, block)
         ]
-        found = sobol_indices(
-            np.concatenate(parts), len(axes), int(study.table["sweep"].get("seed", 0))
-        )
-        if found is None:
+        seed = int(study.table["sweep"].get("seed", 0))
+        indices = sobol_indices(np.concatenate(blocks), len(axes), seed)
+        if indices is None:
             refused.append(output.title)
             continue
-        if found.left_out:
-            partly[output.title] = found.left_out
+        if indices.left_out:
+            left_out[output.title] = indices.left_out
         rows[output.name] = {
-            "first_order": found.first,
-            "first_order_low": found.first - found.first_error,
-            "first_order_high": found.first + found.first_error,
-            "total": found.total,
-            "total_low": found.total - found.total_error,
-            "total_high": found.total + found.total_error,
-            "points": np.full(len(axes), found.points),
+            "first_order": indices.first,
+            "first_order_low": indices.first - indices.first_error,
+            "first_order_high": indices.first + indices.first_error,
+            "total": indices.total,
+            "total_low": indices.total - indices.total_error,
+            "total_high": indices.total + indices.total_error,
+            "points": np.full(len(axes), indices.points),
         }
-        strength[output.name] = found.total
-    notes = (
-        [f"Indices are those of the first {points} points of each block."] if points < block else []
-    )
+        strength[output.name] = indices.total
+    notes = []
+    if points < block:
+        notes.append(f"Indices are those of the first {points} points of each block.")
+    notes += _notes_on_left_out(refused, left_out)
+    if not rows and not notes:
+        return None
+    return Sensitivity(SOBOL, [axis.key for axis in axes], rows, strength, notes)
+
+
+def _notes_on_left_out(refused: list[str], left_out: dict[str, int]) -> list[str]:
+    """Return which results have no indices, and of which some points are left out."""
+    notes = []
     if refused:
         part = f"{100 * MOST_LEFT_OUT:g} % of the points"
-        words = (
+        reason = (
             f"more than {part} have a drop without a value, since it failed or has none; or "
             "the others are fewer than two, or equal"
         )
-        notes.append(f"No indices of {', '.join(refused)}: {words}.")
-    if partly:
-        told = ", ".join(f"{number} of {title}" for title, number in partly.items())
+        notes.append(f"No indices of {', '.join(refused)}: {reason}.")
+    if left_out:
+        numbers = ", ".join(f"{number} of {title}" for title, number in left_out.items())
         notes.append(
-            f"Points left out, since one of their drops has no value: {told}. The indices "
+            f"Points left out, since one of their drops has no value: {numbers}. The indices "
             "are computed from the others."
         )
-    return (
-        Sensitivity(SOBOL, [axis.key for axis in axes], rows, strength, notes)
-        if rows or notes
-        else None
-    )
+    return notes
 
 
 def _ranks(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensitivity | None:
     named = [axis.key for axis in axes if not axis.numeric]
     numeric = [axis for axis in axes if axis.numeric]
-    notes = (
-        [
+    notes = []
+    if named:
+        notes.append(
             f"{', '.join(named)}: names have no order, so that there is no rank "
             "correlation with them."
-        ]
-        if named
-        else []
-    )
+        )
     if not numeric:
         return Sensitivity(RANKS, [], {}, {}, notes)
     places = sampled_places(study, _RANKED)
@@ -168,27 +171,25 @@ def _ranks(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensit
 
 def _ranges(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensitivity | None:
     orders = [ascending_order(axis) for axis in axes]
-    rows, strength, without = {}, {}, []
+    rows = {}
+    strength = {}
+    without_middle = []
     for output in outputs:
-        moved = one_at_a_time(on_grid(study, output.name), orders)
-        if not np.isfinite(moved.middle):
-            without.append(output.title)
+        ranges = one_at_a_time(on_grid(study, output.name), orders)
+        if not np.isfinite(ranges.middle):
+            without_middle.append(output.title)
             continue
-        middle = np.full(len(axes), moved.middle)
         rows[output.name] = {
-            "lowest": moved.lowest,
-            "at_the_middle": middle,
-            "highest": moved.highest,
-            "relative_range": moved.relative,
+            "lowest": ranges.lowest,
+            "at_the_middle": np.full(len(axes), ranges.middle),
+            "highest": ranges.highest,
+            "relative_range": ranges.relative,
         }
-        strength[output.name] = moved.relative
-    notes = (
-        [f"No range of {', '.join(without)}: the drop at the middle of the grid has no value."]
-        if without
-        else []
-    )
-    return (
-        Sensitivity(RANGES, [axis.key for axis in axes], rows, strength, notes)
-        if rows or notes
-        else None
-    )
+        strength[output.name] = ranges.relative
+    notes = []
+    if without_middle:
+        results = ", ".join(without_middle)
+        notes.append(f"No range of {results}: the drop at the middle of the grid has no value.")
+    if not rows and not notes:
+        return None
+    return Sensitivity(RANGES, [axis.key for axis in axes], rows, strength, notes)

@@ -53,13 +53,13 @@ def _signal_chart(study: Study, sensor: str, name: str) -> Chart | None:
     """
     variable = f"{SIGNAL}{sensor}"
     most = max(_FEW, int(_BYTES / (8 * study.shapes[variable][-1])))
-    signals, numbers = (
-        sampled_output(study, variable, most),
-        drop_numbers(study, *sampled_places(study, most)),
-    )
+    signals = sampled_output(study, variable, most)
+    numbers = drop_numbers(study, *sampled_places(study, most))
     touch = _first_touches(study, sensor, most)
-    there = np.isfinite(signals).all(axis=1) & np.isfinite(touch)
-    signals, numbers, touch = signals[there], numbers[there], touch[there]
+    complete = np.isfinite(signals).all(axis=1) & np.isfinite(touch)
+    signals = signals[complete]
+    numbers = numbers[complete]
+    touch = touch[complete]
     if not len(signals) or not np.abs(signals).max() > 0.0:
         return None
     times = study.times(sensor)
@@ -82,9 +82,8 @@ def _signal_chart(study: Study, sensor: str, name: str) -> Chart | None:
         "aligned at first touch: those of the smallest and the largest peak, "
         "and up to three between."
     )
-    return Chart(
-        name, f"Sensor {shortened(visible(sensor), 60)}", ((band,), (lower,)), caption, 2.6
-    )
+    title = f"Sensor {shortened(visible(sensor), 60)}"
+    return Chart(name, title, ((band,), (lower,)), caption, 2.6)
 
 
 def _first_touches(study: Study, sensor: str, most: int) -> Floats:
@@ -109,20 +108,29 @@ def _views(step: float, samples: int) -> tuple[View, ...]:
 
 def _band(signals: Floats, touch: Floats, step: float, before: float) -> Iterator[Band | Line]:
     """Yield all readings as bands in short intervals of the time since first touch."""
-    first, ahead = np.round(touch / step).astype(int), round(before / step)
-    aligned = np.full((len(signals), ahead + signals.shape[1] - int(np.median(first))), np.nan)
-    for row, one, begin in zip(aligned, signals, (first - ahead).tolist(), strict=True):
-        part = one[begin : begin + len(row)]
-        row[: len(part)] = part
+    # numbers of samples: of the first touch of each drop, and shown ahead of it
+    touches = np.round(touch / step).astype(int)
+    ahead = round(before / step)
+    aligned = _aligned(signals, touches - ahead, ahead + signals.shape[1] - int(np.median(touches)))
     spans = np.array_split(np.arange(aligned.shape[1]), min(_COLUMNS, aligned.shape[1]))
-    readings = (aligned[:, span].ravel() for span in spans)
-    parts = np.array(
-        [np.percentile(one[np.isfinite(one)], (0, 5, 50, 95, 100)) for one in readings]
-    )
-    middle = step * np.array([span.mean() - ahead for span in spans])
-    yield Band(middle, parts[:, 0], parts[:, 4], "all", "band")
-    yield Band(middle, parts[:, 1], parts[:, 3], BAND, "inner band")
-    yield Line(middle, parts[:, 2], "median")
+    percentiles = []
+    for span in spans:
+        readings = aligned[:, span].ravel()
+        percentiles.append(np.percentile(readings[np.isfinite(readings)], (0, 5, 50, 95, 100)))
+    least, low, median, high, most = np.array(percentiles).T
+    time = step * np.array([span.mean() - ahead for span in spans])
+    yield Band(time, least, most, "all", "band")
+    yield Band(time, low, high, BAND, "inner band")
+    yield Line(time, median, "median")
+
+
+def _aligned(signals: Floats, starts: Indices, samples: int) -> Floats:
+    """Return signals from the start of each on, with NaN where they have ended."""
+    aligned = np.full((len(signals), samples), np.nan)
+    for row, signal, start in zip(aligned, signals, starts.tolist(), strict=True):
+        shown = signal[start : start + samples]
+        row[: len(shown)] = shown
+    return aligned
 
 
 def _single(
@@ -133,16 +141,14 @@ def _single(
     """
     by_peak = np.argsort(-np.abs(signals).max(axis=1), kind="stable")
     chosen = dict.fromkeys(by_peak[np.linspace(0, len(by_peak) - 1, _FEW).astype(int)].tolist())
-    peaks = (
-        {int(by_peak[0]): ", largest peak", int(by_peak[-1]): ", smallest peak"}
-        if len(chosen) > 1
-        else {}
-    )
-    for place, drop in enumerate(chosen):
-        since = times - touch[drop]
-        there = slice(int(np.searchsorted(since, -before)), None)
-        x, y = _drawn(since[there], signals[drop][there])
-        yield Line(x, y, f"drop {numbers[drop]}{peaks.get(drop, '')}", series(place))
+    peaks = {}
+    if len(chosen) > 1:
+        peaks = {int(by_peak[0]): ", largest peak", int(by_peak[-1]): ", smallest peak"}
+    for number, drop in enumerate(chosen):
+        since_touch = times - touch[drop]
+        start = int(np.searchsorted(since_touch, -before))
+        x, y = _drawn(since_touch[start:], signals[drop][start:])
+        yield Line(x, y, f"drop {numbers[drop]}{peaks.get(drop, '')}", series(number))
 
 
 def _drawn(x: Floats, y: Floats) -> tuple[Floats, Floats]:
@@ -152,5 +158,6 @@ def _drawn(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     kept = visible_points(len(x), lambda first, last: (x[first:last], y[first:last]), _FINEST)
     if kept is None:
         return x, y
-    near = np.union1d(kept, np.arange(np.searchsorted(x, (x[1] - x[0]) * _CLOSE * _FARTHER)))
-    return x[near], y[near]
+    beginning = np.arange(np.searchsorted(x, (x[1] - x[0]) * _CLOSE * _FARTHER))
+    shown = np.union1d(kept, beginning)
+    return x[shown], y[shown]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -53,30 +54,33 @@ def slip_chart(study: Study) -> Chart | None:
     with np.errstate(divide="ignore", invalid="ignore"):
         scale = pairs.coefficient * pairs.ratio * impacts["approach_speed_m_s"]
         before, after = (slip / scale for slip in slips(impacts, pairs.radius))
-    there = np.flatnonzero(np.isfinite(before) & np.isfinite(after))
-    if not there.size:
+    with_slip = np.flatnonzero(np.isfinite(before) & np.isfinite(after))
+    if not with_slip.size:
         return None
-    told = {"Slip before, ψ": ("1", before[there]), "Slip after, ψ": ("1", after[there])}
+    numbers = numbers[with_slip]
+    before = before[with_slip]
+    after = after[with_slip]
+    quantities = {"Slip before, ψ": ("1", before), "Slip after, ψ": ("1", after)}
     axes = [axis for axis in study_axes(study) if axis.varies]
-    groups = grouped(study, axes, numbers[there], drop_texts(study, told, numbers[there]))
+    groups = grouped(study, axes, numbers, drop_texts(study, quantities, numbers))
     marks = [
         Points(
-            before[there][one.chosen],
-            after[there][one.chosen],
-            one.name,
-            one.role,
-            one.texts,
-            one.keys,
+            before[group.chosen],
+            after[group.chosen],
+            group.name,
+            group.role,
+            group.texts,
+            group.keys,
         )
-        for one in groups
+        for group in groups
     ]
-    restitution, ratio, inertia = (
-        impacts["restitution_achieved"][there],
-        pairs.ratio[there],
-        pairs.inertia_ratio[there],
-    )
     return slip_map(
-        marks, before[there], restitution, ratio, inertia, "The first impact of each drop a mark."
+        marks,
+        before,
+        impacts["restitution_achieved"][with_slip],
+        pairs.ratio[with_slip],
+        pairs.inertia_ratio[with_slip],
+        "The first impact of each drop a mark.",
     )
 
 
@@ -95,20 +99,28 @@ def _pairs(study: Study, numbers: Indices) -> _Pairs:
     """Return what the contacts of drops are; each combination of the keys on which it
     depends is read once.
     """
-    table = {key: value for key, value in study.table.items() if key != "sweep"}
-    first = {key: values[0] for key, values in study.coordinates.items()}
     axes = [
         replace(axis, values=study.coordinates[axis.key])
         for axis in study_axes(study)
         if axis.key.startswith(_OF_THE_CONTACT)
     ]
-    rows = list(zip(*(values_at(study, axis, numbers).tolist() for axis in axes), strict=True)) or [
-        ()
-    ] * len(numbers)
-    found = {}
-    for row in dict.fromkeys(rows):
-        case = case_at(table, {**first, **dict(zip((axis.key for axis in axes), row, strict=True))})
-        law = friction_law_of(case)
-        known = (np.nan, np.nan) if law is None else (law.coefficient, moduli_ratio(law, case))
-        found[row] = (case.sphere.radius, rigid_problem(case).inertia_ratio, *known)
-    return _Pairs(*np.array([found[row] for row in rows], dtype=float).T)
+    keys = [axis.key for axis in axes]
+    columns = [values_at(study, axis, numbers).tolist() for axis in axes]
+    rows = list(zip(*columns, strict=True)) if columns else [()] * len(numbers)
+    contacts = {
+        row: _contact_at(study, dict(zip(keys, row, strict=True))) for row in dict.fromkeys(rows)
+    }
+    return _Pairs(*np.array([contacts[row] for row in rows], dtype=float).T)
+
+
+def _contact_at(study: Study, values: Mapping[str, Any]) -> tuple[float, float, float, float]:
+    """Return a row of `_Pairs` for values of keys; other keys do not matter to it."""
+    table = {key: value for key, value in study.table.items() if key != "sweep"}
+    first_values = {key: levels[0] for key, levels in study.coordinates.items()}
+    case = case_at(table, {**first_values, **values})
+    coefficient = ratio = np.nan
+    law = friction_law_of(case)
+    if law is not None:
+        coefficient = law.coefficient
+        ratio = moduli_ratio(law, case)
+    return case.sphere.radius, rigid_problem(case).inertia_ratio, coefficient, ratio

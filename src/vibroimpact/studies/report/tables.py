@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.limit import limits
+from vibroimpact.report.report import Column, Table, table_of
 from vibroimpact.studies.percentiles import PERCENTILES
 from vibroimpact.studies.report.axes import StudyAxis, study_axes
 from vibroimpact.studies.report.labels import drops_text, percent, range_text, value_text
 from vibroimpact.studies.report.outputs import Output
-from vibroimpact.studies.report.sensitivity_table import RANKS, SOBOL, Sensitivity
-from vibroimpact.studies.study import Study
+from vibroimpact.studies.report.sensitivity_table import RANGES, RANKS, SOBOL, Sensitivity
+from vibroimpact.studies.study import Study, StudyDoubt
 from vibroimpact.studies.unit_slips import study_slips
 from vibroimpact.units.display import MISSING, digits, fixed
 
@@ -25,7 +27,7 @@ PERCENTILE_COLUMNS = [
     "drops",
     "mean",
     "standard_deviation",
-    *(f"percentile_{part}" for part in PERCENTILES),
+    *(f"percentile_{percentile}" for percentile in PERCENTILES),
 ]
 """Columns of `percentiles.csv`."""
 
@@ -34,6 +36,7 @@ COUNTED_FROM = "Drops are counted from 0, as in study.nc and drops.csv."
 _WORST_KEYS = 4  # keys shown of the worst drop; all are in drops.csv
 
 _COUNT = "number_of_impacts"
+_COUNTS = ("points", "drops")  # columns of whole numbers in sensitivity.csv
 _FAILURES, _REASONS = 10, 5
 _MOST_KEYS = 20
 _IDLE = set(f"0. ±{MISSING}")
@@ -51,36 +54,37 @@ def counts_sentence(study: Study) -> str:
     return f"{drops}; {failed} failed ({percent(failed / study.size)})."
 
 
+def reason_sentences(study: Study) -> list[str]:
+    """Return the most frequent reasons of failure, each with its number of drops."""
+    return [
+        f"{drops_text(number)}{', such as' if number > 1 else ''}: {reason}"
+        for number, reason in reasons(study)
+    ]
+
+
 def reasons(study: Study) -> list[tuple[int, str]]:
     """Return the most frequent reasons of failure (numbers in the text ignored): the
     number of drops, and the text of the first.
     """
-    found: dict[str, str] = {}
+    first_reasons: dict[str, str] = {}
     counts: Counter[str] = Counter()
-    for words in study.failures.values():
-        kind = _NUMBER.sub("#", words)
-        found.setdefault(kind, words)
-        counts[kind] += 1
-    return [(number, found[kind]) for kind, number in counts.most_common(_REASONS)]
+    for reason in study.failures.values():
+        without_numbers = _NUMBER.sub("#", reason)
+        first_reasons.setdefault(without_numbers, reason)
+        counts[without_numbers] += 1
+    return [(number, first_reasons[kind]) for kind, number in counts.most_common(_REASONS)]
 
 
-def failures_table(study: Study) -> tuple[list[str], list[list[str]]]:
-    """Return the table of the first failed drops: headers, and rows with number, point
-    and reason.
-    """
-    axes, rows = study_axes(study), []
-    for number, reason in list(study.failures.items())[:_FAILURES]:
-        rows.append(
-            [
-                str(number),
-                *(
-                    value_text(axis, value)
-                    for axis, value in zip(axes, point_of(study, axes, number), strict=True)
-                ),
-                reason,
-            ]
-        )
-    return ["Drop (from 0)", *(axis.key for axis in axes), "Reason"], rows
+def failures_table(study: Study) -> Table:
+    """Return the table of the first failed drops: number, values of the keys, and reason."""
+    axes = study_axes(study)
+    failures = dict(list(study.failures.items())[:_FAILURES])
+    points = [point_of(study, axes, number) for number in failures]
+    columns = [Column("Drop (from 0)", [str(number) for number in failures], is_text=True)]
+    for number, axis in enumerate(axes):
+        columns.append(Column(axis.key, [value_text(axis, point[number]) for point in points]))
+    columns.append(Column("Reason", list(failures.values()), is_text=True, wraps=True))
+    return Table(columns)
 
 
 def point_of(study: Study, axes: list[StudyAxis], number: int) -> list[Any]:
@@ -95,25 +99,28 @@ def doubt_sentences(study: Study) -> list[str]:
     """Return warnings: suspected slips of units, then each limit that drops exceed with
     the number of drops and the worst of them.
     """
-    axes, found = study_axes(study), study_slips(study.table, study.coordinates)
-    for limit, drops, worst, number in study.doubts:
-        known = limits().get(limit)
-        title, shown = (
-            (known.title, known.shown(number))
-            if known
-            else (limit.replace("_", " "), digits(number, 3))
-        )
-        point = zip(axes, point_of(study, axes, worst), strict=True)
-        where = ", ".join(
-            [f"{axis.key} {value_text(axis, value)}" for axis, value in point if axis.varies][
-                :_WORST_KEYS
-            ]
-        )
-        found.append(
-            f"{title}: {drops:,} of {study.size:,} drops, worst {shown} at drop "
-            f"{worst}{f' ({where})' if where else ''}"
-        )
-    return found
+    return [
+        *study_slips(study.table, study.coordinates),
+        *(_doubt_sentence(study, doubt) for doubt in study.doubts),
+    ]
+
+
+def _doubt_sentence(study: Study, doubt: StudyDoubt) -> str:
+    """Return a limit that drops exceed, with their number and the worst of them."""
+    title = doubt.limit.replace("_", " ")
+    worst = digits(doubt.number, 3)
+    limit = limits().get(doubt.limit)  # another version may have had others
+    if limit:
+        title = limit.title
+        worst = limit.shown(doubt.number)
+    axes = study_axes(study)
+    point = zip(axes, point_of(study, axes, doubt.worst), strict=True)
+    keys = [f"{axis.key} {value_text(axis, value)}" for axis, value in point if axis.varies]
+    values = f" ({', '.join(keys[:_WORST_KEYS])})" if keys else ""
+    return (
+        f"{title}: {doubt.drops:,} of {study.size:,} drops, worst {worst} at drop "
+        f"{doubt.worst}{values}"
+    )
 
 
 def axes_table(study: Study, axes: list[StudyAxis]) -> list[tuple[str, str, str]]:
@@ -125,141 +132,129 @@ def axes_table(study: Study, axes: list[StudyAxis]) -> list[tuple[str, str, str]
     return rows
 
 
-def percentiles_table(outputs: list[Output]) -> tuple[list[str], list[list[str]]]:
-    """Return the table of the statistics of the results as text: headers, and a row per
-    result that is not zero in all drops.
+def percentiles_table(outputs: list[Output]) -> Table:
+    """Return the table of the statistics of the results, a row for each that is not zero in
+    all drops.
     """
-    rows = []
-    for one in outputs:
-        spread, (unit, size) = one.spread, one.scale
-        if not spread.drops or one.is_zero:
-            continue
-        # otherwise it is rounding
-        deviation = spread.standard_deviation if spread.varies or spread.drops < 2 else 0.0
-        parts = [
-            f"{part:g}" if one.name == _COUNT else digits(part / size)
-            for part in spread.percentiles
-        ]
-        rows.append(
-            [
-                one.title,
-                unit,
-                str(spread.drops),
-                digits(spread.mean / size),
-                digits(deviation / size),
-                *parts,
-            ]
-        )
-    return _without_idle_columns(
-        [
-            "Result",
-            "Unit",
-            "Drops",
-            "Mean",
-            "Standard deviation",
-            *(f"{part} %" for part in PERCENTILES),
-        ],
-        rows,
-    )
+    headings = ["Result", "Unit", "Drops", "Mean", "Standard deviation"]
+    headings += [f"{percentile} %" for percentile in PERCENTILES]
+    rows = [
+        _statistics_row(output) for output in outputs if output.spread.drops and not output.is_zero
+    ]
+    return _without_idle_columns(table_of(headings, rows))
+
+
+def _statistics_row(output: Output) -> list[str]:
+    """Return name, unit and statistics of a result."""
+    spread = output.spread
+    size = output.scale.size
+    percentiles = [digits(value / size) for value in spread.percentiles]
+    if output.name == _COUNT:
+        percentiles = [f"{value:g}" for value in spread.percentiles]
+    # the deviation of equal values is rounding
+    deviation = spread.standard_deviation if spread.varies or spread.drops < 2 else 0.0
+    return [
+        output.title,
+        output.scale.unit,
+        str(spread.drops),
+        digits(spread.mean / size),
+        digits(deviation / size),
+        *percentiles,
+    ]
 
 
 def percentiles_rows(outputs: list[Output]) -> list[dict[str, Any]]:
     """Return the rows of `percentiles.csv`, in SI units."""
-    found = []
-    for one in outputs:
-        numbers = {"mean": one.spread.mean, "standard_deviation": one.spread.standard_deviation}
-        numbers |= {
-            f"percentile_{part}": value
-            for part, value in zip(PERCENTILES, one.spread.percentiles, strict=True)
-        }
-        told = {name: value if np.isfinite(value) else None for name, value in numbers.items()}
-        found.append({"output": one.name, "unit": one.unit, "drops": one.spread.drops, **told})
-    return found
+    rows = []
+    for output in outputs:
+        spread = output.spread
+        numbers = {"mean": spread.mean, "standard_deviation": spread.standard_deviation}
+        for percentile, value in zip(PERCENTILES, spread.percentiles, strict=True):
+            numbers[f"percentile_{percentile}"] = value
+        row = {"output": output.name, "unit": output.unit, "drops": spread.drops}
+        rows.append({**row, **{name: _finite(value) for name, value in numbers.items()}})
+    return rows
 
 
-def sensitivity_table(
-    found: Sensitivity, outputs: list[Output]
-) -> tuple[list[str], list[list[str]]]:
-    """Return the table of sensitivities as text: headers, and a row per key with an
-    effect (two of Sobol indices), a column per result.
+def _finite(value: float) -> float | None:
+    """Return a value; None if it is missing."""
+    return value if np.isfinite(value) else None
+
+
+def sensitivity_table(sensitivity: Sensitivity, outputs: list[Output]) -> Table:
+    """Return the table of sensitivities: a row per key with an effect (two of Sobol indices), a
+    column per result.
     """
-    shown = [one for one in outputs if one.name in found.rows]
+    shown = [output for output in outputs if output.name in sensitivity.rows]
     rows = [
         row
-        for key in _sensitivity_cells(found, shown).values()
-        for row in key
+        for rows_of_key in _sensitivity_cells(sensitivity, shown).values()
+        for row in rows_of_key
         if not _is_idle(row[1:])
     ]
-    return _without_idle_columns(["Key", *(one.title for one in shown)], rows)
+    return _without_idle_columns(table_of(["Key", *(output.title for output in shown)], rows))
 
 
-def without_effect(found: Sensitivity, outputs: list[Output]) -> list[str]:
+def without_effect(sensitivity: Sensitivity, outputs: list[Output]) -> list[str]:
     """Return the keys that the table of sensitivities leaves out, as all their numbers
     there are zero once rounded.
     """
-    shown = [one for one in outputs if one.name in found.rows]
+    shown = [output for output in outputs if output.name in sensitivity.rows]
     return [
         key
-        for key, rows in _sensitivity_cells(found, shown).items()
+        for key, rows in _sensitivity_cells(sensitivity, shown).items()
         if all(_is_idle(row[1:]) for row in rows)
     ]
 
 
-def _sensitivity_cells(found: Sensitivity, shown: list[Output]) -> dict[str, list[list[str]]]:
+_SHOWN_COLUMNS = {
+    SOBOL: {"first_order": ", alone", "total": ", in all"},
+    RANKS: {"rank_correlation": ""},
+    RANGES: {"relative_range": ""},
+}
+"""Columns of `sensitivity.csv` that the table shows, with what follows the key in their rows."""
+
+
+def _sensitivity_cells(
+    sensitivity: Sensitivity, outputs: list[Output]
+) -> dict[str, list[list[str]]]:
     """Return the rows of each key."""
-    columns = {
-        SOBOL: {"first_order": ", alone", "total": ", in all"},
-        RANKS: {"rank_correlation": ""},
-    }.get(found.way, {"relative_range": ""})
-    return {
-        key: [
-            [f"{key}{words}", *(_cell(found.rows[one.name], column, place) for one in shown)]
-            for column, words in columns.items()
-        ]
-        for place, key in enumerate(found.keys[:_MOST_KEYS])
-    }
+    rows: dict[str, list[list[str]]] = {}
+    for number, key in enumerate(sensitivity.keys[:_MOST_KEYS]):
+        rows[key] = []
+        for column, suffix in _SHOWN_COLUMNS[sensitivity.way].items():
+            cells = [_cell(sensitivity.rows[output.name], column, number) for output in outputs]
+            rows[key].append([f"{key}{suffix}", *cells])
+    return rows
 
 
-def _without_idle_columns(
-    headers: list[str], rows: list[list[str]]
-) -> tuple[list[str], list[list[str]]]:
+def _without_idle_columns(table: Table) -> Table:
     """Return a table without columns of nothing but zeros and dashes."""
-    kept = [
-        place
-        for place in range(len(headers))
-        if place == 0 or not _is_idle([row[place] for row in rows])
-    ]
-    return [headers[place] for place in kept], [[row[place] for place in kept] for row in rows]
+    names, *others = table.columns
+    return Table((names, *(column for column in others if not _is_idle(column.cells))))
 
 
-def _is_idle(cells: list[str]) -> bool:
+def _is_idle(cells: Sequence[str]) -> bool:
     """Return whether cells are nothing but zeros and dashes."""
     return bool(cells) and all(cell and set(cell) <= _IDLE for cell in cells)
 
 
-def sensitivity_rows(found: Sensitivity) -> list[dict[str, Any]]:
+def sensitivity_rows(sensitivity: Sensitivity) -> list[dict[str, Any]]:
     """Return the rows of `sensitivity.csv`, one per result and key."""
     rows = []
-    for output, columns in found.rows.items():
-        for place, key in enumerate(found.keys):
-            cells = {name: float(values[place]) for name, values in columns.items()}
-            counts = {
-                name: int(value) for name, value in cells.items() if name in ("points", "drops")
-            }
-            rows.append(
-                {
-                    "output": output,
-                    "key": key,
-                    **{name: v if np.isfinite(v) else None for name, v in cells.items()},
-                    **counts,
-                }
-            )
+    for output, columns in sensitivity.rows.items():
+        for number, key in enumerate(sensitivity.keys):
+            row: dict[str, Any] = {"output": output, "key": key}
+            for name, values in columns.items():
+                value = float(values[number])
+                row[name] = int(value) if name in _COUNTS else _finite(value)
+            rows.append(row)
     return rows
 
 
-def sensitivity_words(found: Sensitivity) -> str:
+def sensitivity_words(sensitivity: Sensitivity) -> str:
     """Return the explanation of the table of sensitivities."""
-    if found.way == SOBOL:
+    if sensitivity.way == SOBOL:
         return (
             "Sobol's indices, in percent of the variance: of a key alone (first order), and "
             "with its interactions "
@@ -267,14 +262,13 @@ def sensitivity_words(found: Sensitivity) -> str:
             "than this half is not significantly "
             "different from zero; an estimate may even be negative."
         )
-    if found.way == RANKS:
-        drops = max((int(row["drops"].max()) for row in found.rows.values()), default=0)
-        least = (
-            f" Of {drops} drops, magnitudes below {digits(2.0 / np.sqrt(drops), 1)} may be "
-            "due to chance."
-            if drops
-            else ""
-        )
+    if sensitivity.way == RANKS:
+        drops = max((int(row["drops"].max()) for row in sensitivity.rows.values()), default=0)
+        least = ""
+        if drops:
+            # twice the standard deviation of the correlation of independent ranks
+            chance = digits(2.0 / np.sqrt(drops), 1)
+            least = f" Of {drops} drops, magnitudes below {chance} may be due to chance."
         return (
             "Spearman's rank correlation: 1 if the result always rises with the key, \u22121 "
             f"if it always falls.{least}"
@@ -286,30 +280,30 @@ def sensitivity_words(found: Sensitivity) -> str:
     )
 
 
-def _cell(row: dict[str, Floats], column: str, place: int) -> str:
-    value = float(row[column][place])
-    if column == "rank_correlation":
+def _cell(columns: dict[str, Floats], name: str, number: int) -> str:
+    """Return the sensitivity to a key as text, with half of its interval if it has one."""
+    value = float(columns[name][number])
+    if name == "rank_correlation":
         return digits(value, 2)
-    half = (
-        f" ± {_percent(float(row[f'{column}_high'][place]) - value)}"
-        if f"{column}_high" in row
-        else ""
-    )
-    return f"{_percent(value)}{half}"
+    if f"{name}_high" not in columns:
+        return _percent(value)
+    half = float(columns[f"{name}_high"][number]) - value
+    return f"{_percent(value)} ± {_percent(half)}"
 
 
-def _percent(part: float) -> str:
-    return fixed(100.0 * part, 1)
+def _percent(fraction: float) -> str:
+    return fixed(100.0 * fraction, 1)
 
 
 def spread_words(study: Study) -> str:
     """Return the explanation of the table of percentiles."""
     failed = " Drops that failed are left out." if study.failures else ""
-    words = {
+    explanations = {
         "grid": "These percentiles describe the grid; its levels were chosen, so that they are not "
         "probabilities.",
         "zip": "These percentiles describe the chosen points; they are not probabilities.",
         "saltelli": "Percentiles of the results for the sampled keys, from the blocks A and B, "
         "whose drops are independent.",
     }
-    return words.get(study.design, "Percentiles of the results for the sampled keys.") + failed
+    sampled = "Percentiles of the results for the sampled keys."
+    return explanations.get(study.design, sampled) + failed

@@ -98,8 +98,9 @@ def measured_records(measured: MeasuredModes) -> list[dict[str, Any]]:
 
 def compared_table(measured: MeasuredModes) -> MeasuredTable:
     """Return the modes of a case and measured ones as the folder of the case's modes has them."""
+    table = table_of(*mode_cells(measured.modes), TEXTS)
     rows = [mode_record(pair) for pair in measured.modes]
-    return MeasuredTable(*mode_cells(measured.modes), TEXTS, MODE_COLUMNS, rows, measured.doubts)
+    return MeasuredTable(table, MODE_COLUMNS, rows, measured.doubts)
 
 
 def _write_modes(measured: MeasuredModes, path: Path) -> None:

@@ -9,9 +9,9 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.cases.build import resolved_case
+from vibroimpact.files.result_folder import CASE, write_case
 from vibroimpact.quoting import visible
 from vibroimpact.report.report import Explanation, Report, Section, Table, table_of
-from vibroimpact.results.folder import CASE, write_case
 from vibroimpact.test_analysis.criteria_tables import (
     mode_table,
     modes_section,
