@@ -56,7 +56,7 @@ FLOORS = {  # top to bottom: name of a group, its colour, its subpackages and th
     "physics": (
         "#f1d9b5",
         {
-            "dynamics": "problem, simulate, response;\nrigid, phase_plane, vibrating, sensors",
+            "dynamics": "problem, simulate, response;\ncore, rigid, oblique, shaken,\nvibrating, sensors",
             "bodies": "sphere, plate",
             "structures": "meshes, supports, modes,\nreduction, store",
             "contact": "laws, pair, statics",
@@ -86,6 +86,7 @@ axes.axis("off")
 for number, (floor, (colour, rooms)) in enumerate(reversed(FLOORS.items())):
     axes.text(-0.165, number + 0.5, floor, va="center", fontsize=10, style="italic")
     width = 1.0 / len(rooms)
+    size = 10.0 if len(rooms) < 8 else 8.5  # of names, so that the longest fits its box
     for place, (room, holds) in enumerate(rooms.items()):
         box = FancyBboxPatch(
             (place * width + 0.006, number + 0.1),
@@ -97,7 +98,9 @@ for number, (floor, (colour, rooms)) in enumerate(reversed(FLOORS.items())):
         )
         axes.add_patch(box)
         middle = (place + 0.5) * width
-        axes.text(middle, number + 0.66, room, ha="center", va="center", fontsize=10, weight="bold")
+        axes.text(
+            middle, number + 0.66, room, ha="center", va="center", fontsize=size, weight="bold"
+        )
         axes.text(middle, number + 0.36, holds, ha="center", va="center", fontsize=7.5)
 figure.tight_layout(pad=0.3)
 figure.savefig("architecture.png", dpi=110)
