@@ -73,7 +73,7 @@ def test_histories() -> None:
                 )
     says(
         PAGE,
-        "which is accurate to {} of the largest value in the shipped cases of rigid bodies",
+        "Histories of the shipped cases of rigid bodies are accurate to {} of the largest value",
         1e-9,
     )
     assert worst < 1e-9
