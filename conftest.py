@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -83,14 +84,16 @@ def folders_of_examples(
     item = request.node
     if not isinstance(item, DoctestItem) or not _says(item, '"falls"', '"recognised"'):
         return
-    import vibroimpact.recognition.recognise as recognition
+    import vibroimpact as vi
     from knock_data import write_knocks
 
     folder = tmp_path_factory.mktemp("recognition")
     monkeypatch.chdir(folder)
     write_knocks(folder / "falls", rocks=16, falls=6)
     once = request.getfixturevalue("recognise_once")
-    monkeypatch.setattr(recognition, "recognise", once)
+    # the module of this name is hidden by its function
+    monkeypatch.setattr(import_module("vibroimpact.recognition.recognise"), "recognise", once)
+    monkeypatch.setattr(vi.recognition, "recognise", once)
     if _says(item, '"recognised"'):
         once("falls", folds=2, seeds=1).save(folder / "recognised")
 

@@ -55,9 +55,9 @@ def export_result(
     --------
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
-    >>> with TemporaryDirectory() as place:
-    ...     vi.simulate(vi.load_case("paper:type1-theory")).save(Path(place, "drop"))
-    ...     [file.name for file in export_result(Path(place, "drop"), "csv")]
+    >>> with TemporaryDirectory() as temporary:
+    ...     folder = vi.simulate(vi.load_case("paper:type1-theory")).save(Path(temporary, "drop"))
+    ...     [file.name for file in export_result(folder, "csv")]
     ['impacts.csv', 'history.csv']
     """
     found = find_export_format(format)

@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from vibroimpact.dynamics.response import Response
+from vibroimpact.errors import InputError
 from vibroimpact.report.report import Report
 from vibroimpact.results.result import result_of
 from vibroimpact.runs.paraview import PARAVIEW, write_paraview
@@ -18,6 +19,11 @@ def report_of(response: Response) -> Report:
     A caller that is done with the response can release its memory, and take the report of its
     result.
 
+    Raises
+    ------
+    InputError
+        If the response is that of a batch.
+
     Examples
     --------
     >>> import vibroimpact as vi
@@ -25,6 +31,8 @@ def report_of(response: Response) -> Report:
     >>> list(report.files)
     ['case.toml', 'impacts.csv', 'result.nc', 'sensors', 'paraview']
     """
+    if response.problem.shape != ():
+        raise InputError("a report tells of one drop: response.drop(0).save(...)")
     report = report_of_result(result_of(response))
     moving_bodies = {PARAVIEW: partial(write_paraview, response)}
     return replace(report, files={**report.files, **moving_bodies})

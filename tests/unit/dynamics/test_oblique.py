@@ -1038,7 +1038,7 @@ def test_studies_of_oblique_drops_on_a_plate_that_vibrates(tmp_path: Path) -> No
 def test_a_statement_names_what_it_takes() -> None:
     with pytest.raises(
         vi.InputError,
-        match=r'such as vi\.find_friction_law\("coulomb"\)\(coefficient=0\.3\), not <class',
+        match=r'such as vi\.friction\.find_friction_law\("coulomb"\)\(coefficient=0\.3\), not <class',
     ):
         vi.Oblique(friction=vi.friction.find_friction_law("coulomb"))  # type: ignore[arg-type]
     assert (

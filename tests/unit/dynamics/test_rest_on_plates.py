@@ -285,9 +285,25 @@ def test_a_write_off_of_less_than_nothing_fails_the_run(monkeypatch: pytest.Monk
         laws=(LOSSY,),
         height=0.2,
         rest_speed=0.01,
+        oblique=vi.Oblique(),  # the core follows other drops, and calls no function of Python
     )
     with pytest.raises(
         vi.ComputationError,
         match=r"was set to rest with .* J more than it and the bodies below it had left",
     ):
         vi.simulate(replace(problem, impacts=None))
+
+
+def test_a_ledger_that_does_not_close_fails_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        "vibroimpact.dynamics.rigid.drops._mechanical_energy",
+        lambda state: np.full(state.shape[1], 1.0),
+    )
+    problem = vi.Problem(
+        sphere=vi.Body(mass=1.0, contact_offset=0.1),
+        plate=vi.rigid_plate(),
+        laws=(LOSSY,),
+        height=0.2,
+    )
+    with pytest.raises(vi.ComputationError, match="the energy ledger does not close"):
+        vi.simulate(problem)

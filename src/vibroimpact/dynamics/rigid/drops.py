@@ -59,8 +59,6 @@ def follow(
             room = drops.rows.shape[1]
             pause = room if progress is None else min(int(drops.impacts.max()) + 1, room)
             follow_drops(manner, drops, pause)
-            if manner.waits:
-                _take_laws_at_touch(problem, drops, held)
             if progress is not None:
                 progress(_fraction_done(problem, drops))
             moving = drops.phases < 0
@@ -68,6 +66,8 @@ def follow(
                 break
             if drops.impacts[moving].max() == room:
                 drops = _with_more_room(drops)
+            if manner.waits:
+                _take_laws_at_touch(problem, drops, held)
     return _response_of(problem, drops, energy_in, start if keeps_bounces else None)
 
 
