@@ -23,6 +23,8 @@ WATER, QUARTZ = vi.Liquid(), 2650.0
 def test_bounds() -> None:
     says(PAGE, "a restitution below {} or not at all", phase_contact._LEAST_RESTITUTION)
     says(PAGE, "all contacts below a tolerance of {}.", line_contact._TIGHTEST)
+    assert line_contact._OF_STEP == 0.01  # a hundredth
+    says(PAGE, "a hundredth of the tolerance, or {} if that is larger", line_contact._LEAST_ERROR)
     says(PAGE, "It is integrated for {} steps of contact", elastic_impact.MOST_STEPS)
     says(PAGE, "up to that time with at most {};", elastic_impact.MOST_STEPS_TO_A_TIME)
     says(PAGE, "more than {} % is refused", 100.0 * air._DENSEST)
@@ -71,7 +73,7 @@ def test_histories() -> None:
                 )
     says(
         PAGE,
-        "which is accurate to {} of the largest value in the shipped cases of rigid bodies",
+        "Histories of the shipped cases of rigid bodies are accurate to {} of the largest value",
         1e-9,
     )
     assert worst < 1e-9

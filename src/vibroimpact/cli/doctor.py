@@ -135,8 +135,10 @@ def _usage_state(usage: Mapping[str, Any]) -> str:
 
 def _compiler_state(compiler: Mapping[str, Any]) -> str:
     if not compiler["compiled"]:
-        slower = "some ten times slower, where bodies vibrate one to two hundred times"
-        return f"none: the solver runs in plain Python, {slower}: {compiler['reason']}"
+        return (
+            "none: the solver runs in plain Python, some thirty to a hundred times slower: "
+            f"{compiler['reason']}"
+        )
     if not compiler["usable"]:
         state = (
             f"{compiler['folder']} is not a folder that can be written to: the solver is compiled "
