@@ -304,7 +304,9 @@ def test_an_almost_exact_bound_excludes_nothing() -> None:
     says(GUIDE, "all nearly exactly, is less than {} %", 0.05)
     assert least_error(with_moduli(None, (20.0, 7.0))) < 5e-4
     says(
-        RECOGNITION, "For coal and gangue the bound is less than {} %: a test against it finds no leak", 0.05
+        RECOGNITION,
+        "For coal and gangue the bound is less than {} %: a test against it finds no leak",
+        0.05,
     )
 
 
