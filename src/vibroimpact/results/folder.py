@@ -117,7 +117,7 @@ def load_result(directory: str | PathLike[str]) -> Result:
 
     See Also
     --------
-    vibroimpact.Response.save : writes one.
+    vibroimpact.Response : its method `save` writes one.
 
     Examples
     --------
