@@ -110,7 +110,7 @@ def test_program_of_the_page() -> None:
     rock = names["zener"](
         0.008, names["mass"], names["stiffness"], speed=8.83, material=vi.find_material("steel")
     )
-    says(PAGE, 'material=vi.find_material("steel")) # {}', rock)
+    says(PAGE, "zener(0.008, mass, stiffness, 8.83, steel) # {}", rock)
     assert rock == pytest.approx(0.75, abs=0.02)  # a quarter of the speed
     drop = vi.case_of(PICTURES.THICKNESS).to_problem()
     mass, stiffness = float(drop.sphere.mass), float(drop.laws[0].stiffness)
