@@ -217,8 +217,7 @@ def _check_contact_law(what: ToCalibrate, problem: Problem) -> None:
             "give a number in place of the function",
             f"{what.law_at}.{name}",
         )
-    leaves_dent = problem.same_spot and getattr(problem.laws[0], "lasting", False)
-    if leaves_dent and impact_count(problem) > 1:
+    if problem.memory_lasts and impact_count(problem) > 1:
         raise InputError(
             f"{what.case.contact.law} leaves a dent that the next impact falls into, and each "
             "impact is matched on fresh surfaces; set it to false, or run.impacts = 1",

@@ -38,7 +38,7 @@ from vibroimpact.calibration.law_report import (
     ways_words,
 )
 from vibroimpact.cases.build import resolved_case
-from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, sealed
+from vibroimpact.files.check_sums import CHECK_SUMS, digests_of, sealed
 from vibroimpact.files.result_folder import CASE, write_case
 from vibroimpact.report.report import Block, Code, Explanation, Note, Report, Section
 from vibroimpact.results.csv_files import write_csv
@@ -144,9 +144,7 @@ def _report(
 
 def _write_calibration(document: Mapping[str, Any], path: Path) -> None:
     """Write the calibration with its checksum, and that of the case beside it if there is one."""
-    case = path.parent / CASE
-    check_sums = {CASE: file_digest(case)} if case.exists() else {}
-    path.write_bytes(sealed({**document, CHECK_SUMS: check_sums}))
+    path.write_bytes(sealed({**document, CHECK_SUMS: digests_of(path.parent, (CASE,))}))
 
 
 def _write_rows(rows: Sequence[Mapping[str, Any]], path: Path) -> None:

@@ -15,7 +15,7 @@ import tomli_w
 
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import atomic_folder
-from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, sealed
+from vibroimpact.files.check_sums import CHECK_SUMS, digests_of, sealed
 from vibroimpact.files.new_folders import made_folder
 from vibroimpact.files.recover import recover
 
@@ -133,9 +133,7 @@ def write_summary(
         text = json.dumps(summary, indent=2, allow_nan=False) + "\n"
         (folder / SUMMARY).write_text(text, encoding="utf-8")
         return
-    check_sums = {
-        name: file_digest(folder / name) for name in checked_files if (folder / name).is_file()
-    }
+    check_sums = digests_of(folder, checked_files)
     (folder / SUMMARY).write_bytes(sealed({**summary, CHECK_SUMS: check_sums}))
 
 

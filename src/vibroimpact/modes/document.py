@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from vibroimpact._version import __version__
@@ -38,11 +39,10 @@ POINT_COLUMNS = (
 )
 
 
-def modes_document(modes: Modes) -> dict[str, Any]:
+def modes_document(modes: Modes, summary: Mapping[str, Any]) -> dict[str, Any]:
     """Return what `modes --json` prints: the summary of the folder, and for each body the
     rows of `modes.csv` and `points.csv`.
     """
-    summary = summary_of_modes(modes)
     tables = {
         name: {"modes": mode_rows(name, body), "points": point_rows(name, body)}
         for name, body in modes.items()

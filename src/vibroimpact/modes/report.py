@@ -77,7 +77,7 @@ def report_of(modes: Modes, measured: MeasuredTable | None = None) -> Report:
     sections.extend(_motion(modes))
     sections.append(_case(modes))
     summary = summary_of_modes(modes)
-    data = modes_document(modes)
+    data = modes_document(modes, summary)
     if measured is not None:
         data |= {"measured": list(measured.rows), "doubts": list(measured.doubts)}
     return Report(

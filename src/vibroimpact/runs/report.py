@@ -50,8 +50,9 @@ def report_of(result: Result) -> Report:
     sections = [_setup(result), _impacts(result), _energies(result)]
     if result.signals:
         sections.append(_sensors(result))
-    if treatment_sentence(result) or deformation_rows(result):
-        sections.append(_deformation(result))
+    deformation = _deformation(result)
+    if deformation.blocks:
+        sections.append(deformation)
     if result.deflection is not None:
         # the plate in motion takes the place of the maps of its deflection
         sections.append(_motion(result, charts.pop("deflection", None)))
@@ -126,7 +127,7 @@ def sensor_table(result: Result) -> Table:
 
 
 def _deformation(result: Result) -> Section:
-    """Return how deformation of the bodies is modelled."""
+    """Return how deformation of the bodies is modelled; without blocks if they are rigid."""
     blocks: list[Block] = []
     if sentence := treatment_sentence(result):
         blocks.append(Paragraph(sentence))
