@@ -86,12 +86,12 @@ def minimize(
     residual = residuals(values, np.arange(len(values)))
     cost = _cost(residual)
     damping = np.full(len(values), _FIRST_DAMPING)
-    moving = np.arange(len(values))
+    moving = np.flatnonzero(~held.all(axis=1))
     for _ in range(_MOST_ITERATIONS):
         if not moving.size:
             break
         current = values[moving]
-        slopes = jacobian(residuals, current, residual[moving], moving, bounds)
+        slopes = jacobian(residuals, current, residual[moving], moving, bounds, held[moving])
         gradient = np.einsum("snk,sn->sk", slopes, residual[moving])
         # values at a bound stay there if the sum of squares falls beyond it
         outward = ((current <= bounds.least) & (gradient > 0.0)) | (
@@ -134,19 +134,30 @@ def _damped_step(slopes: Floats, gradient: Floats, free: Bools, damping: Floats)
 
 
 def jacobian(
-    residuals: Residuals, values: Floats, residual: Floats, chains: Indices, bounds: Bounds
+    residuals: Residuals,
+    values: Floats,
+    residual: Floats,
+    chains: Indices,
+    bounds: Bounds,
+    held: Bools | None = None,
 ) -> Floats:
     """Return the derivatives of the residuals by the values, (S, N, K).
 
+    Those by values that are `held` (S, K) are not computed, and zero.
     `residual`: the residuals at the values, (S, N).
     """
     chain_count, value_count = values.shape
     step = _STEP * bounds.size(values)
     step = np.where(values + step > bounds.most, -step, step)
-    moved = values + np.eye(value_count)[:, None, :] * step  # (K, S, K), one value moved in each
-    moved_residual = residuals(moved.reshape(-1, value_count), np.tile(chains, value_count))
-    moved_residual = moved_residual.reshape(value_count, chain_count, -1)
-    return np.asarray(np.moveaxis((moved_residual - residual) / step.T[:, :, None], 0, 2))
+    free = np.ones(values.shape, dtype=bool) if held is None else ~held
+    moved_chain, moved_value = np.nonzero(free)
+    moved = values[moved_chain]
+    moved_step = step[moved_chain, moved_value]
+    moved[np.arange(len(moved)), moved_value] += moved_step
+    change = residuals(moved, chains[moved_chain]) - residual[moved_chain]
+    slopes = np.zeros((chain_count, value_count, residual.shape[1]))
+    slopes[moved_chain, moved_value] = change / moved_step[:, None]
+    return np.moveaxis(slopes, 1, 2)
 
 
 def _cost(residual: Floats) -> Floats:
