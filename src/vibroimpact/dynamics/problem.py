@@ -547,12 +547,9 @@ class Problem:
 
     @property
     def is_rigid_and_normal(self) -> bool:
-        """Whether rigid bodies meet along the normal under a law with a force, in a vacuum, on a
-        plate whose supports have no motion.
-        """
+        """Whether rigid bodies meet along the normal, in a vacuum, on a plate at rest."""
         return (
-            isinstance(self.laws[0], CompliantLaw)
-            and not self.vibrates
+            not self.vibrates
             and self.oblique is None
             and self.motion is None
             and self.fluid is None

@@ -70,7 +70,7 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     # Newton iterates may overflow; results that are not finite are detected and retried
     with np.errstate(all="ignore"):
         if stated.is_rigid_and_normal:
-            # a law without a force does not load the compiler
+            # a drop of bodies that vibrate does not load it
             from vibroimpact.dynamics.rigid.drops import follow
 
             response = follow(stated, progress, keeps_bounces=True)

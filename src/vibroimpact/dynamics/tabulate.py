@@ -102,7 +102,7 @@ def _table_of(problem: Problem) -> Response:
     # Newton iterates may overflow; results that are not finite are detected and retried
     with np.errstate(all="ignore"):
         if problem.is_rigid_and_normal:
-            # a law without a force does not load the compiler
+            # a drop of bodies that vibrate does not load it
             from vibroimpact.dynamics.rigid.drops import follow
 
             return follow(problem, None, keeps_bounces=False)

@@ -26,6 +26,7 @@ from vibroimpact.dynamics.core import static
 PAIR = ContactPair(2.4e9, 0.02, 0.1, 8e7, 0.3)
 BALL = vi.Body(mass=0.1, contact_offset=0.02)
 SLUGGISH = vi.laws.find_contact_law("flores")(stiffness=1e7, restitution=0.05)
+NEWTON = vi.laws.find_contact_law("newton")(restitution=0.6)
 LAWS = sorted(name for name, law in contact_laws().items() if issubclass(law, CompliantLaw))
 
 
@@ -75,6 +76,23 @@ def test_interpreted_drops_have_the_same_numbers(name: str) -> None:
             np.testing.assert_array_equal(within, ~np.isnan(values), err_msg=column)
 
 
+@pytest.mark.parametrize("name", ["newton", "jackson-green-marghitu"])
+def test_drops_without_a_force_are_the_same_alone_and_in_a_batch(name: str) -> None:
+    """Those of a large batch are compiled, a single one is not: to the last digit."""
+    law = vi.laws.find_contact_law(name).example(PAIR)
+    stated = problem(laws=(law,), height=np.geomspace(0.021, 2.0, 60), impacts=4)
+    for changes in ({}, {"impacts": None, "rest_speed": 0.3, "duration": 1.5}):
+        together = vi.tabulate(replace(stated, **changes))
+        for drop in range(0, 60, 7):
+            alone = vi.tabulate(replace(stated, **changes).take(drop))
+            assert alone.outcomes[0] is together.outcomes[drop]
+            for column, values in alone.impacts.items():
+                rows = together.impacts[column][drop, : len(values)]
+                np.testing.assert_array_equal(rows, values, err_msg=column)
+            for entry, value in alone.energy.items():
+                assert together.energy[entry][drop] == value, entry
+
+
 @pytest.mark.parametrize("shape", [(), (5,)])
 def test_pauses_change_no_digit(shape: tuple[int, ...]) -> None:
     """With `progress` the core pauses after each impact, without it only for room."""
@@ -111,6 +129,8 @@ def test_laws_at_the_speed_of_each_impact_are_those_of_the_drop_alone() -> None:
         ({"impacts": None, "duration": 0.5}, vi.Outcome.DURATION, 2),
         ({"impacts": None, "rest_speed": 1.5}, vi.Outcome.REST_SPEED, 2),
         ({"height": None, "speed": 1.0, "gravity": 0.0}, vi.Outcome.LEFT, 2),
+        ({"laws": (NEWTON,), "impacts": 3}, vi.Outcome.IMPACTS, 4),
+        ({"laws": (NEWTON,), "impacts": None, "rest_speed": 1.5}, vi.Outcome.REST_SPEED, 3),
         ({"laws": (SLUGGISH,), "height": 0.02 + 1e-6}, vi.Outcome.CAPTURED, 1),
         ({"laws": (JKR.example(PAIR),), "height": 0.02 + 1e-9}, vi.Outcome.STUCK, 1),
     ],
@@ -125,6 +145,9 @@ def test_flights_and_contacts_join_up(
     assert len(bounces) == len(bounces[:]) == flights
     for bounce, following in pairwise(bounces):
         contact = bounce.contact
+        if contact is None:
+            np.testing.assert_array_equal(following.flight.start, bounce.flight_end)
+            continue
         np.testing.assert_array_equal(following.flight.start, bounce.flight_end + contact.duration)
         np.testing.assert_array_equal(following.flight.gap, -contact.final_delta)
         np.testing.assert_array_equal(following.flight.velocity, -contact.final_rate)

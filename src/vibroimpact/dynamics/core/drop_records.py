@@ -102,13 +102,9 @@ class StopRules(NamedTuple):
     endings: Integers
 
 
-class DropManner(NamedTuple):
-    """What stays the same for all drops of a batch.
-
-    manner, rules, grid, collocates: how contacts are solved, as `lines.follow_lines` takes them.
-    addresses (4,): the functions of the law. lasts: does the memory of the law last from impact to
-    impact? waits: does the law depend on the approach speed, so that a drop waits at its touch for
-    its coefficients? stops: rules that end runs in flight.
+class ContactManner(NamedTuple):
+    """How contacts are solved: as `lines.follow_lines` takes it, with the addresses (4,) of the
+    functions of the law.
     """
 
     manner: LineManner
@@ -116,6 +112,18 @@ class DropManner(NamedTuple):
     grid: NormalGrid
     collocates: Boolean
     addresses: Integers
+
+
+class DropManner(NamedTuple):
+    """What stays the same for all drops of a batch.
+
+    contacts: how contacts are solved. has_force: has the law a force, so that there are any? lasts:
+    does the memory of the law last from impact to impact? waits: does a drop wait at its touch for
+    what the law is at the approach speed? stops: rules that end runs in flight.
+    """
+
+    contacts: ContactManner
+    has_force: Boolean
     lasts: Boolean
     waits: Boolean
     stops: StopRules
@@ -127,8 +135,8 @@ class Drops(NamedTuple):
     phases (B,): of those above, or how the run ended. impacts, flights (B,): how many there were.
     state (B, 16). rows (B, R, 20): the table of impacts, with the further columns. laws (B, L, K):
     coefficients of the law of each impact, of which the last one goes on. at_touch (B, K): those at
-    the approach speed of a touch, where they depend on it. coefficients (B, K): of the next impact,
-    with the memory of earlier ones.
+    the approach speed of a touch, where they depend on it; of a law without a force its separation
+    speed [m/s]. coefficients (B, K): of the next impact, with the memory of earlier ones.
     """
 
     phases: Integers

@@ -64,7 +64,7 @@ from vibroimpact.dynamics.core.drop_records import (
 from vibroimpact.dynamics.core.events import ENDS
 from vibroimpact.dynamics.core.law import law_at_touch, law_remembering
 from vibroimpact.dynamics.core.line import CAPTURED, FAILED
-from vibroimpact.dynamics.core.line_records import LineContact, LineManner
+from vibroimpact.dynamics.core.line_records import ContactRoom, LineContact, LineManner
 from vibroimpact.dynamics.core.lines import room_of, solve_pair, with_bodies
 from vibroimpact.dynamics.core.records import Law
 from vibroimpact.dynamics.core.static import static_indentation
@@ -79,48 +79,138 @@ _ENDS_AT_PULL_OFF = ENDS.index("pull-off")
 def follow_drops(manner: DropManner, drops: Drops, pause: int) -> None:
     """Follow drops until their runs end, or they have had `pause` impacts.
 
-    Where the law depends on the approach speed, they are followed until they touch; in the next
-    call they go on from there, with the coefficients at that speed.
+    Where the law depends on the approach speed, or has no force, they are followed until they
+    touch; in the next call they go on from there, with what the law is at that speed.
     """
-    room = room_of(manner.rules)
-    addresses = manner.addresses
-    lasts = manner.lasts
-    rules = manner.rules
-    grid = manner.grid
+    contacts = manner.contacts
+    room = room_of(contacts.rules)
     next_coefficients = np.zeros(drops.coefficients.shape[1])
-    last_law = drops.laws.shape[1] - 1
     for drop in range(len(drops.phases)):
         state = drops.state[drop]
         coefficients = drops.coefficients[drop]
         impacts = drops.impacts[drop]
         phase = drops.phases[drop]
         if phase == AT_START:
-            remember(addresses, False, drops.laws[drop, 0], 0.0, coefficients)
-            set_rest_speed(addresses, coefficients, state)
+            begin(manner, drops.laws[drop, 0], coefficients, state)
             phase = IN_FLIGHT
-        if phase == AT_TOUCH and manner.waits:
-            remember(addresses, lasts, drops.at_touch[drop], state[DEEPEST], coefficients)
+        if phase == AT_TOUCH and manner.waits and manner.has_force:
+            remember(
+                contacts.addresses, manner.lasts, drops.at_touch[drop], state[DEEPEST], coefficients
+            )
         while phase == IN_FLIGHT or (phase == AT_TOUCH and impacts < pause):
             if phase == IN_FLIGHT:
-                level, _, _, _, _ = levels_at(addresses[2])(coefficients)
-                phase = fly(manner.stops, -level, impacts, state)
+                phase = fly(manner.stops, touch_gap(manner, coefficients), impacts, state)
                 drops.flights[drop] += 1
                 if manner.waits:
                     break
                 continue
-            law = law_at_touch(addresses, coefficients, room.series, state[CLOSING])
-            bodies = bodies_at_touch(manner.manner, law, state)
-            _, contact = solve_pair(law, bodies, rules, grid, manner.collocates, room)
             row = drops.rows[drop, impacts]
-            write_contact(state, row, contact)
             impacts += 1
             row[IMPACT] = impacts
-            fresh = drops.laws[drop, min(impacts, last_law)]
-            remember(addresses, lasts, fresh, state[DEEPEST], next_coefficients)
-            phase = leave(manner.waits, law, contact, next_coefficients, state, row)
-            coefficients[:] = next_coefficients
+            if manner.has_force:
+                fresh = drops.laws[drop, min(impacts, drops.laws.shape[1] - 1)]
+                phase = collide(manner, room, fresh, coefficients, next_coefficients, state, row)
+            else:
+                phase = collide_at_once(drops.at_touch[drop, 0], state, row)
         drops.phases[drop] = phase
         drops.impacts[drop] = impacts
+
+
+@compiled(lambda t: t.void(t.of(DropManner), t.vector, t.vector, t.vector))
+def begin(manner: DropManner, fresh: Floats, coefficients: Floats, state: Floats) -> None:
+    """Give a drop the coefficients of its first law, and a rest speed unless it has one.
+
+    That is the speed from which it would rise by its static indentation, and at least 1e-6 of the
+    first approach speed.
+    """
+    least = _LEAST_REST_SPEED * next_touch(state, 0.0).speed
+    if manner.has_force:
+        addresses = manner.contacts.addresses
+        remember(addresses, False, fresh, 0.0, coefficients)
+        touch, release, _, _, _ = levels_at(addresses[2])(coefficients)
+        weight = state[MASS] * state[GRAVITY]
+        sag = static_indentation(addresses, coefficients, release, weight) - touch
+        least = max(math.sqrt(2.0 * state[GRAVITY] * sag), least)
+    if math.isnan(state[REST_SPEED]):
+        state[REST_SPEED] = least
+
+
+@compiled(lambda t: t.real(t.of(DropManner), t.vector))
+def touch_gap(manner: DropManner, coefficients: Floats) -> float:
+    """Return the gap at which a drop touches next [m]: zero, or below it in a dent."""
+    if not manner.has_force:
+        return 0.0
+    level, _, _, _, _ = levels_at(manner.contacts.addresses[2])(coefficients)
+    return -float(level)
+
+
+@compiled(
+    lambda t: t.integer(
+        t.of(DropManner), t.of(ContactRoom), t.vector, t.vector, t.vector, t.vector, t.vector
+    )
+)
+def collide(
+    manner: DropManner,
+    room: ContactRoom,
+    fresh: Floats,
+    coefficients: Floats,
+    next_coefficients: Floats,
+    state: Floats,
+    row: Floats,
+) -> int:
+    """Take a drop through a contact, and return its phase then.
+
+    Parameters
+    ----------
+    manner : DropManner
+        What all drops have in common.
+    room : ContactRoom
+        Room in which the contact is solved.
+    fresh : array, shape (K,)
+        Coefficients of the law of the next impact, without memory.
+    coefficients : array, shape (K,)
+        Of the law of this impact; afterwards of the next one.
+    next_coefficients : array, shape (K,)
+        Room.
+    state, row : array, shape (16,), (20,)
+        Of the drop, and of the impact.
+    """
+    contacts = manner.contacts
+    addresses = contacts.addresses
+    law = law_at_touch(addresses, coefficients, room.series, state[CLOSING])
+    bodies = bodies_at_touch(contacts.manner, law, state)
+    _, contact = solve_pair(law, bodies, contacts.rules, contacts.grid, contacts.collocates, room)
+    write_contact(state, row, contact)
+    remember(addresses, manner.lasts, fresh, state[DEEPEST], next_coefficients)
+    phase = leave(manner.waits, law, contact, next_coefficients, state, row)
+    coefficients[:] = next_coefficients
+    return phase
+
+
+@compiled(lambda t: t.integer(t.real, t.vector, t.vector))
+def collide_at_once(separation: float, state: Floats, row: Floats) -> int:
+    """Let a drop rebound at its touch with a separation speed [m/s], and return its phase then."""
+    speed = state[CLOSING]
+    lost = 0.5 * state[MASS] * (speed * speed - separation * separation)
+    state[GAP] = 0.0
+    state[VELOCITY] = separation
+    state[DISSIPATED] += lost
+    row[TOUCH] = state[TIME]
+    row[DURATION] = 0.0
+    row[APPROACH] = speed
+    row[SEPARATION] = separation
+    row[INDENTATION] = 0.0
+    row[LOST] = lost
+    row[PLASTIC_WORK] = 0.0
+    row[RELEASE_GAP] = 0.0
+    row[RELEASE_VELOCITY] = separation
+    write_rebound(state, row)
+    if not is_slow(state):
+        return IN_FLIGHT
+    limit = end_of_bounces(state, row)
+    state[END_TIME] = limit if limit < math.inf else state[TIME]
+    lie_still(state, limit, 0.0, 0.0, 0.0)
+    return END_BY_REST_SPEED
 
 
 @compiled(lambda t: t.void(t.integers, t.boolean, t.vector, t.real, t.vector))
@@ -136,22 +226,6 @@ def remember(
         _, _, memory_level, _, _ = levels_at(addresses[2])(fresh)
         if deepest > memory_level:
             compressed_at(addresses[3])(deepest, fresh, coefficients)
-
-
-@compiled(lambda t: t.void(t.integers, t.vector, t.vector))
-def set_rest_speed(addresses: Integers, coefficients: Floats, state: Floats) -> None:
-    """Give a drop a rest speed, unless it has one.
-
-    That is the speed from which it would rise by its static indentation, and at least 1e-6 of the
-    first approach speed.
-    """
-    if not math.isnan(state[REST_SPEED]):
-        return
-    touch, release, _, _, _ = levels_at(addresses[2])(coefficients)
-    weight = state[MASS] * state[GRAVITY]
-    sag = static_indentation(addresses, coefficients, release, weight) - touch
-    least = _LEAST_REST_SPEED * next_touch(state, 0.0).speed
-    state[REST_SPEED] = max(math.sqrt(2.0 * state[GRAVITY] * sag), least)
 
 
 @compiled(lambda t: t.of(FreeFall)(t.vector, t.real))
@@ -308,12 +382,18 @@ def release(state: Floats, row: Floats, contact: LineContact, law: Law, next_lev
     state[DISSIPATED] += lost - contact.plastic
     state[PLASTIC] += contact.plastic
     row[LOST] = lost
+    write_rebound(state, row)
+    return phase
+
+
+@compiled(lambda t: t.void(t.vector, t.vector))
+def write_rebound(state: Floats, row: Floats) -> None:
+    """Write the restitution of an impact, and the height to which a drop rises after it."""
     separation = row[SEPARATION]
     row[RESTITUTION] = separation / row[APPROACH]
     if state[GRAVITY] > 0.0:
         rise = 0.5 * (separation * separation) / state[GRAVITY]
         row[REBOUND] = state[RADIUS] + state[GAP] + rise
-    return phase
 
 
 @compiled(lambda t: t.void(t.vector, t.integers, t.vector, t.real, t.real, t.real))
@@ -327,15 +407,26 @@ def bring_to_rest(
 ) -> None:
     """Put a drop that has come to rest at a time [s] into its static indentation.
 
-    The contact has an energy `stored` [J]; what the drop has beyond that at rest is written off.
+    The contact has an energy `stored` [J].
+    """
+    weight = state[MASS] * state[GRAVITY]
+    sag = static_indentation(addresses, coefficients, release_level, weight)
+    stored_at_rest, _ = energies_at(addresses[1])(sag, coefficients)
+    lie_still(state, time, stored, sag, stored_at_rest)
+
+
+@compiled(lambda t: t.void(t.vector, t.real, t.real, t.real, t.real))
+def lie_still(state: Floats, time: float, stored: float, sag: float, stored_at_rest: float) -> None:
+    """Write that a drop has come to rest at a time [s] with an indentation `sag` [m].
+
+    The energy of the contact was `stored` and is `stored_at_rest` [J]; what the drop had beyond
+    that at rest is written off.
     """
     mass = state[MASS]
     gravity = state[GRAVITY]
     velocity = state[VELOCITY]
     weight = mass * gravity
     energy = mass * (0.5 * (velocity * velocity) + gravity * state[GAP]) + stored
-    sag = static_indentation(addresses, coefficients, release_level, weight)
-    stored_at_rest, _ = energies_at(addresses[1])(sag, coefficients)
     state[REST_TIME] = time
     state[SAG] = sag
     state[STORED] = stored_at_rest

@@ -10,13 +10,16 @@ import numpy as np
 
 from vibroimpact.arrays import Drops as Indices
 from vibroimpact.arrays import Floats
-from vibroimpact.compiled import law_addresses
-from vibroimpact.contact.law import CompliantLaw, ContactLaw
+from vibroimpact.compiled import interpreted, law_addresses
+from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core import stop_rules
-from vibroimpact.dynamics.core.drop_records import DropManner, Drops, StopRules
+from vibroimpact.dynamics.core.drop_records import ContactManner, DropManner, Drops, StopRules
 from vibroimpact.dynamics.core.drops import follow_drops
+from vibroimpact.dynamics.core.line_records import LineManner
+from vibroimpact.dynamics.core.normal_records import NormalGrid
+from vibroimpact.dynamics.core.phase_records import PhaseRules
 from vibroimpact.dynamics.energy import close_ledger, ledger_holds
 from vibroimpact.dynamics.law_coefficients import coefficients_of
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
@@ -29,6 +32,39 @@ from vibroimpact.dynamics.rigid.phase_rules import normal_grid
 from vibroimpact.dynamics.rigid.recorded_drops import RecordedDrops
 
 _FIRST_ROOM = 8  # impacts of a drop; the room doubles
+_FEW = 200
+"""Fewer impacts than these without a force take less time in plain Python than numba takes to load.
+"""
+
+_UNTIL_REST = 50  # about so many impacts of a drop
+
+_NO_CONTACTS = ContactManner(
+    manner=LineManner(2, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0),
+    rules=PhaseRules(
+        tolerance=0.0,
+        roughness=0.0,
+        roughness_inside=0.0,
+        sharper=0.0,
+        root=2,
+        counts=np.zeros(0, dtype=np.int64),
+        vectors=np.zeros((0, 0, 0)),
+        matrices=np.zeros((0, 0, 0)),
+        onward=np.zeros((0, 0, 0)),
+    ),
+    grid=NormalGrid(
+        steps=0,
+        derivatives=np.zeros((0, 0, 0)),
+        values=np.zeros((0, 0, 0)),
+        integrals=np.zeros((0, 0, 0)),
+        own=np.zeros((0, 0, 0)),
+        room=np.zeros((0, 0)),
+        motion=np.zeros((0, 0)),
+        extent=np.zeros(2, dtype=np.int64),
+    ),
+    collocates=False,
+    addresses=np.zeros(4, dtype=np.int64),
+)
+"""What takes the place of the contacts of a law without a force."""
 
 _OUTCOMES = np.array([Outcome(ending).code for ending in records.ENDINGS])
 """Codes of outcomes by the numbers of endings."""
@@ -44,13 +80,15 @@ def follow(
     Parameters
     ----------
     problem : Problem
-        Of rigid bodies at rest, whose spheres fall along the normal under a law with a force.
+        Of rigid bodies at rest, whose spheres fall along the normal.
     progress : callable, optional
         Called after each impact with the fraction done, in [0, 1].
     keeps_bounces : bool
         Are flights and contacts kept, from which histories are read?
     """
     with ExitStack() as held:  # laws of other packages, which the core calls
+        if _is_quick(problem):
+            held.enter_context(interpreted())
         drops = _at_start(problem, held)
         manner = _manner_of(problem)
         energy_in = _mechanical_energy(drops.state.T)
@@ -71,6 +109,14 @@ def follow(
     return _response_of(problem, drops, energy_in, start if keeps_bounces else None)
 
 
+def _is_quick(problem: Problem) -> bool:
+    """Are the drops of a problem computed sooner than the compiler is loaded?"""
+    if not isinstance(problem.laws[0], InstantaneousLaw):
+        return False
+    size = math.prod(problem.shape)
+    return size == 1 or size * (problem.impacts or _UNTIL_REST) < _FEW
+
+
 def _at_start(problem: Problem, held: ExitStack) -> Drops:
     """Return the drops of a problem at their start."""
     size = math.prod(problem.shape)
@@ -86,9 +132,11 @@ def _at_start(problem: Problem, held: ExitStack) -> Drops:
     else:
         state[:, records.GAP] = problem.height - state[:, records.RADIUS]
         state[:, records.VELOCITY] = problem.velocity
-    laws = np.stack(
-        [held.enter_context(coefficients_of(law, size)) for law in _laws(problem)], axis=1
-    )
+    laws = np.zeros((size, 1, 1))
+    if isinstance(problem.laws[0], CompliantLaw):
+        laws = np.stack(
+            [held.enter_context(coefficients_of(law, size)) for law in _laws(problem)], axis=1
+        )
     room = min(problem.impacts or MOST_IMPACTS, _FIRST_ROOM)
     rows = np.full((size, room, records.COLUMNS), np.nan)
     return Drops(
@@ -116,17 +164,27 @@ def _laws(problem: Problem) -> list[ContactLaw]:
 
 def _manner_of(problem: Problem) -> DropManner:
     """Return what stays the same for all drops of a problem."""
-    law = problem.laws[0]
-    assert isinstance(law, CompliantLaw)
+    has_force = isinstance(problem.laws[0], CompliantLaw)
     return DropManner(
+        contacts=_contact_manner(problem),
+        has_force=has_force,
+        lasts=problem.memory_lasts,
+        waits=bool(problem.by_speed) or not has_force,
+        stops=_stop_rules(problem),
+    )
+
+
+def _contact_manner(problem: Problem) -> ContactManner:
+    """Return how the contacts of a problem are solved; of a law without a force there are none."""
+    law = problem.laws[0]
+    if not isinstance(law, CompliantLaw):
+        return _NO_CONTACTS
+    return ContactManner(
         manner=common_manner(law, problem.tolerance),
         rules=gauss_rules(law, problem.tolerance),
         grid=normal_grid(0),
         collocates=collocates(law, problem.tolerance),
         addresses=law_addresses(type(law)),
-        lasts=problem.memory_lasts,
-        waits=bool(problem.by_speed),
-        stops=_stop_rules(problem),
     )
 
 
@@ -144,15 +202,23 @@ def _stop_rules(problem: Problem) -> StopRules:
 
 
 def _take_laws_at_touch(problem: Problem, drops: Drops, held: ExitStack) -> None:
-    """Give drops that wait at their touch the coefficients of the law at their approach speed."""
+    """Give drops that wait at their touch what the law is at their approach speed.
+
+    That is its coefficients, or the separation speed where it has no force.
+    """
     touching = np.flatnonzero(drops.phases == records.AT_TOUCH)
     if not touching.size:
         return
     number = int(drops.impacts[touching[0]])  # the same of all that move
     speed = drops.state[touching, records.CLOSING]
     law = _law_at(problem, number, touching, speed)
-    drops.at_touch[touching] = held.enter_context(coefficients_of(law, len(touching)))
-    drops.rows[touching, number, records.ASKED] = law.nominal_restitution
+    if isinstance(law, InstantaneousLaw):
+        separation = law.separation_speed(speed, drops.state[touching, records.MASS])
+        drops.at_touch[touching, 0] = separation
+    else:
+        drops.at_touch[touching] = held.enter_context(coefficients_of(law, len(touching)))
+    if problem.by_speed:
+        drops.rows[touching, number, records.ASKED] = law.nominal_restitution
 
 
 def _law_at(problem: Problem, number: int, drops: Indices, speed: Floats) -> ContactLaw:

@@ -10,7 +10,7 @@ from typing import overload
 import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
-from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.law import CompliantLaw, InstantaneousLaw
 from vibroimpact.dynamics.bounce import Bounce
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED
 from vibroimpact.dynamics.core import drop_records as records
@@ -90,10 +90,12 @@ class RecordedDrop(Sequence[Bounce]):
         flight = self._flight(number)
         if number == len(self.rows):
             return Bounce(_ALONE, flight, np.array([self.end_time]), _ALONE[:0])
-        # a law without a force does not load the compiler
+        row = self.rows[number]
+        if isinstance(self.problem.laws[0], InstantaneousLaw):
+            return Bounce(_ALONE, flight, row[[records.TOUCH]], _ALONE)
+        # only where it is needed: it loads much
         from vibroimpact.dynamics.rigid.line_contact import contact_of
 
-        row = self.rows[number]
         speed = row[[records.APPROACH]]
         law = self._law(number, speed)
         mass = self.problem.sphere.mass * np.ones(1)
