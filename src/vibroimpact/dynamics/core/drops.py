@@ -22,6 +22,8 @@ from vibroimpact.dynamics.core.drop_records import (
     COMPRESSION,
     DAMPED,
     DEEPEST,
+    DENT,
+    DENT_BEFORE,
     DISSIPATED,
     DURATION,
     END_BY_REST_SPEED,
@@ -56,17 +58,29 @@ from vibroimpact.dynamics.core.drop_records import (
     TOUCH,
     VELOCITY,
     WRITTEN_OFF,
+    Drop,
     DropManner,
     Drops,
     FreeFall,
     StopRules,
 )
 from vibroimpact.dynamics.core.events import ENDS
+from vibroimpact.dynamics.core.free_fall import next_touch
+from vibroimpact.dynamics.core.friction_records import NO_FRICTION, Rubbing
 from vibroimpact.dynamics.core.law import law_at_touch, law_remembering
 from vibroimpact.dynamics.core.line import CAPTURED, FAILED
 from vibroimpact.dynamics.core.line_records import ContactRoom, LineContact, LineManner
 from vibroimpact.dynamics.core.lines import room_of, solve_pair, with_bodies
+from vibroimpact.dynamics.core.oblique_drops import (
+    fly_along,
+    glide_along,
+    leaves_dent,
+    over_plate,
+    rub_along,
+    rub_at_once,
+)
 from vibroimpact.dynamics.core.records import Law
+from vibroimpact.dynamics.core.rubbing import normal_path
 from vibroimpact.dynamics.core.static import static_indentation
 from vibroimpact.dynamics.core.stop_rules import first_end
 
@@ -82,50 +96,73 @@ def follow_drops(manner: DropManner, drops: Drops, pause: int) -> None:
     Where the law depends on the approach speed, or has no force, they are followed until they
     touch; in the next call they go on from there, with what the law is at that speed.
     """
-    contacts = manner.contacts
-    room = room_of(contacts.rules)
+    addresses = manner.contacts.addresses
+    room = room_of(manner.contacts.rules)
     next_coefficients = np.zeros(drops.coefficients.shape[1])
+    last_law = drops.laws.shape[1] - 1
     for drop in range(len(drops.phases)):
         state = drops.state[drop]
         coefficients = drops.coefficients[drop]
         impacts = drops.impacts[drop]
         phase = drops.phases[drop]
         if phase == AT_START:
-            begin(manner, drops.laws[drop, 0], coefficients, state)
+            begin(manner.has_force, addresses, drops.laws[drop, 0], coefficients, state)
             phase = IN_FLIGHT
         if phase == AT_TOUCH and manner.waits and manner.has_force:
-            remember(
-                contacts.addresses, manner.lasts, drops.at_touch[drop], state[DEEPEST], coefficients
-            )
+            remember(addresses, manner.lasts, drops.at_touch[drop], state[DENT], coefficients)
         while phase == IN_FLIGHT or (phase == AT_TOUCH and impacts < pause):
             if phase == IN_FLIGHT:
-                phase = fly(manner.stops, touch_gap(manner, coefficients), impacts, state)
+                flight = next_touch(state, touch_gap(manner.has_force, addresses, coefficients))
+                if manner.is_oblique:
+                    half = (manner.half_x, manner.half_y)
+                    flight = over_plate(drops.spheres[drop], drops.along[drop], half, flight)
+                phase = fly(manner.stops, flight, impacts, state)
+                if manner.is_oblique:
+                    elapsed = state[TIME] - flight.start
+                    fly_along(drops.spheres[drop], drops.along[drop], elapsed)
                 drops.flights[drop] += 1
                 if manner.waits:
                     break
                 continue
-            row = drops.rows[drop, impacts]
+            one = drop_of(drops, drop, impacts)
             impacts += 1
-            row[IMPACT] = impacts
+            one.row[IMPACT] = impacts
             if manner.has_force:
-                fresh = drops.laws[drop, min(impacts, drops.laws.shape[1] - 1)]
-                phase = collide(manner, room, fresh, coefficients, next_coefficients, state, row)
+                fresh = drops.laws[drop, min(impacts, last_law)]
+                phase = collide(manner, room, one, fresh, next_coefficients)
             else:
-                phase = collide_at_once(drops.at_touch[drop, 0], state, row)
+                phase = collide_at_once(
+                    manner.is_oblique, manner.rubbing, one, drops.at_touch[drop, 0]
+                )
         drops.phases[drop] = phase
         drops.impacts[drop] = impacts
 
 
-@compiled(lambda t: t.void(t.of(DropManner), t.vector, t.vector, t.vector))
-def begin(manner: DropManner, fresh: Floats, coefficients: Floats, state: Floats) -> None:
+@compiled(lambda t: t.of(Drop)(t.of(Drops), t.integer, t.integer))
+def drop_of(drops: Drops, drop: int, impact: int) -> Drop:
+    """Return one of the drops, with the row of an impact, counted from 0."""
+    return Drop(
+        drops.state[drop],
+        drops.rows[drop, impact],
+        drops.coefficients[drop],
+        drops.spheres[drop],
+        drops.along[drop],
+        drops.friction[drop],
+        drops.taken[drop],
+    )
+
+
+@compiled(lambda t: t.void(t.boolean, t.integers, t.vector, t.vector, t.vector))
+def begin(
+    has_force: bool, addresses: Integers, fresh: Floats, coefficients: Floats, state: Floats
+) -> None:
     """Give a drop the coefficients of its first law, and a rest speed unless it has one.
 
     That is the speed from which it would rise by its static indentation, and at least 1e-6 of the
     first approach speed.
     """
     least = _LEAST_REST_SPEED * next_touch(state, 0.0).speed
-    if manner.has_force:
-        addresses = manner.contacts.addresses
+    if has_force:
         remember(addresses, False, fresh, 0.0, coefficients)
         touch, release, _, _, _ = levels_at(addresses[2])(coefficients)
         weight = state[MASS] * state[GRAVITY]
@@ -135,28 +172,18 @@ def begin(manner: DropManner, fresh: Floats, coefficients: Floats, state: Floats
         state[REST_SPEED] = least
 
 
-@compiled(lambda t: t.real(t.of(DropManner), t.vector))
-def touch_gap(manner: DropManner, coefficients: Floats) -> float:
+@compiled(lambda t: t.real(t.boolean, t.integers, t.vector))
+def touch_gap(has_force: bool, addresses: Integers, coefficients: Floats) -> float:
     """Return the gap at which a drop touches next [m]: zero, or below it in a dent."""
-    if not manner.has_force:
+    if not has_force:
         return 0.0
-    level, _, _, _, _ = levels_at(manner.contacts.addresses[2])(coefficients)
+    level, _, _, _, _ = levels_at(addresses[2])(coefficients)
     return -float(level)
 
 
-@compiled(
-    lambda t: t.integer(
-        t.of(DropManner), t.of(ContactRoom), t.vector, t.vector, t.vector, t.vector, t.vector
-    )
-)
+@compiled(lambda t: t.integer(t.of(DropManner), t.of(ContactRoom), t.of(Drop), t.vector, t.vector))
 def collide(
-    manner: DropManner,
-    room: ContactRoom,
-    fresh: Floats,
-    coefficients: Floats,
-    next_coefficients: Floats,
-    state: Floats,
-    row: Floats,
+    manner: DropManner, room: ContactRoom, drop: Drop, fresh: Floats, next_coefficients: Floats
 ) -> int:
     """Take a drop through a contact, and return its phase then.
 
@@ -166,30 +193,42 @@ def collide(
         What all drops have in common.
     room : ContactRoom
         Room in which the contact is solved.
+    drop : Drop
+        The drop; afterwards with the coefficients of the law of the next impact.
     fresh : array, shape (K,)
-        Coefficients of the law of the next impact, without memory.
-    coefficients : array, shape (K,)
-        Of the law of this impact; afterwards of the next one.
+        These without memory.
     next_coefficients : array, shape (K,)
         Room.
-    state, row : array, shape (16,), (20,)
-        Of the drop, and of the impact.
     """
     contacts = manner.contacts
     addresses = contacts.addresses
-    law = law_at_touch(addresses, coefficients, room.series, state[CLOSING])
+    state = drop.state
+    law = law_at_touch(addresses, drop.coefficients, room.series, state[CLOSING])
     bodies = bodies_at_touch(contacts.manner, law, state)
-    _, contact = solve_pair(law, bodies, contacts.rules, contacts.grid, contacts.collocates, room)
-    write_contact(state, row, contact)
-    remember(addresses, manner.lasts, fresh, state[DEEPEST], next_coefficients)
-    phase = leave(manner.waits, law, contact, next_coefficients, state, row)
-    coefficients[:] = next_coefficients
+    solved, contact = solve_pair(
+        law, bodies, contacts.rules, contacts.grid, contacts.collocates, room
+    )
+    write_contact(state, drop.row, contact)
+    remember(addresses, manner.lasts, fresh, state[DENT], next_coefficients)
+    phase = leave(manner.waits, law, contact, next_coefficients, state, drop.row)
+    if manner.is_oblique and phase != END_FAILED:
+        if manner.rubbing.kind == NO_FRICTION:
+            glide_along(drop, contact.end.time)
+        else:
+            normal = normal_path(solved, law, bodies, contacts.grid)
+            rub_along(manner.rubbing, drop, normal)
+        if manner.lasts and leaves_dent(drop, contact.deepest):
+            state[DENT] = 0.0
+            remember(addresses, True, fresh, 0.0, next_coefficients)
+    drop.coefficients[:] = next_coefficients
     return phase
 
 
-@compiled(lambda t: t.integer(t.real, t.vector, t.vector))
-def collide_at_once(separation: float, state: Floats, row: Floats) -> int:
+@compiled(lambda t: t.integer(t.boolean, t.of(Rubbing), t.of(Drop), t.real))
+def collide_at_once(is_oblique: bool, rubbing: Rubbing, drop: Drop, separation: float) -> int:
     """Let a drop rebound at its touch with a separation speed [m/s], and return its phase then."""
+    state = drop.state
+    row = drop.row
     speed = state[CLOSING]
     lost = 0.5 * state[MASS] * (speed * speed - separation * separation)
     state[GAP] = 0.0
@@ -205,6 +244,11 @@ def collide_at_once(separation: float, state: Floats, row: Floats) -> int:
     row[RELEASE_GAP] = 0.0
     row[RELEASE_VELOCITY] = separation
     write_rebound(state, row)
+    if is_oblique:
+        if rubbing.kind == NO_FRICTION:
+            glide_along(drop, 0.0)
+        else:
+            rub_at_once(rubbing, drop, state[MASS] * (speed + separation))
     if not is_slow(state):
         return IN_FLIGHT
     limit = end_of_bounces(state, row)
@@ -228,37 +272,9 @@ def remember(
             compressed_at(addresses[3])(deepest, fresh, coefficients)
 
 
-@compiled(lambda t: t.of(FreeFall)(t.vector, t.real))
-def next_touch(state: Floats, level: float) -> FreeFall:
-    """Return the flight that a drop is about to make until its gap is at a level [m].
-
-    That is zero, or below it in a dent. The speed of touch v follows from v^2 = v0^2 + 2 g h, and
-    the time is (v0 + v)/g = 2 h/(v - v0), with the height h above the level.
-    """
-    start = state[TIME]
-    velocity = state[VELOCITY]
-    gravity = state[GRAVITY]
-    height = state[GAP] - level
-    speed = math.sqrt(max(velocity * velocity + 2.0 * gravity * height, 0.0))
-    if velocity > 0.0:
-        if gravity == 0.0:
-            return FreeFall(start, math.inf, math.inf, speed)
-        return FreeFall(
-            start, start + velocity / gravity, start + (velocity + speed) / gravity, speed
-        )
-    if speed > velocity and not (gravity == 0.0 and velocity == 0.0):
-        # the same root without cancellation
-        return FreeFall(start, start, start + 2.0 * height / (speed - velocity), speed)
-    return FreeFall(start, start, math.inf, speed)
-
-
-@compiled(lambda t: t.integer(t.of(StopRules), t.real, t.integer, t.vector))
-def fly(stops: StopRules, level: float, impacts: int, state: Floats) -> int:
-    """Let a drop fly until it touches at a gap [m], or until a rule ends its run.
-
-    Return its phase then.
-    """
-    flight = next_touch(state, level)
+@compiled(lambda t: t.integer(t.of(StopRules), t.of(FreeFall), t.integer, t.vector))
+def fly(stops: StopRules, flight: FreeFall, impacts: int, state: Floats) -> int:
+    """Let a drop fly until it touches, or until a rule ends its run; return its phase then."""
     end, ending = first_end(stops, flight, impacts)
     time = min(end, flight.touch)
     elapsed = time - flight.start
@@ -316,7 +332,9 @@ def write_contact(state: Floats, row: Floats, contact: LineContact) -> None:
     row[RELEASE_GAP] = -contact.end.delta
     row[RELEASE_VELOCITY] = -contact.end.rate
     row[LEFT_STORED] = contact.stored
+    row[DENT_BEFORE] = state[DENT]
     state[DEEPEST] = max(state[DEEPEST], contact.deepest)
+    state[DENT] = max(state[DENT], contact.deepest)
     state[TIME] = touch + contact.end.time
     state[GAP] = -contact.end.delta
     state[VELOCITY] = -contact.end.rate

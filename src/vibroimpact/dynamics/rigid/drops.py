@@ -1,4 +1,4 @@
-"""Drops of rigid bodies along the normal, which the core follows from start to end."""
+"""Drops of rigid bodies on a plate that does not move, which the core follows from start to end."""
 
 from __future__ import annotations
 
@@ -10,26 +10,31 @@ import numpy as np
 
 from vibroimpact.arrays import Drops as Indices
 from vibroimpact.arrays import Floats
-from vibroimpact.compiled import interpreted, law_addresses
+from vibroimpact.compiled import interpreted
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
-from vibroimpact.dynamics.columns import IMPACT_COLUMNS
+from vibroimpact.dynamics.columns import IMPACT_COLUMNS, OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core import stop_rules
-from vibroimpact.dynamics.core.drop_records import ContactManner, DropManner, Drops, StopRules
+from vibroimpact.dynamics.core.drop_records import DropManner, Drops, StopRules
 from vibroimpact.dynamics.core.drops import follow_drops
-from vibroimpact.dynamics.core.line_records import LineManner
-from vibroimpact.dynamics.core.normal_records import NormalGrid
-from vibroimpact.dynamics.core.phase_records import PhaseRules
+from vibroimpact.dynamics.core.line_records import ContactManner
+from vibroimpact.dynamics.core.sphere_records import SphereState
 from vibroimpact.dynamics.energy import close_ledger, ledger_holds
 from vibroimpact.dynamics.law_coefficients import coefficients_of
+from vibroimpact.dynamics.oblique.lying import lie
+from vibroimpact.dynamics.oblique.rubbed_contact import (
+    friction_coefficients,
+    friction_steps,
+    rubbing_of,
+)
+from vibroimpact.dynamics.oblique.state import State, energy_taken, friction_parts
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
 from vibroimpact.dynamics.progress import fraction_done
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.rest import Rest
-from vibroimpact.dynamics.rigid.line_contact import collocates, common_manner, gauss_rules
-from vibroimpact.dynamics.rigid.phase_rules import normal_grid
-from vibroimpact.dynamics.rigid.recorded_drops import RecordedDrops
+from vibroimpact.dynamics.rigid.line_contact import NO_CONTACTS, contact_manner
+from vibroimpact.dynamics.rigid.recorded_drops import RecordedDrops, Start, spheres_of
 
 _FIRST_ROOM = 8  # impacts of a drop; the room doubles
 _FEW = 200
@@ -37,34 +42,6 @@ _FEW = 200
 """
 
 _UNTIL_REST = 50  # about so many impacts of a drop
-
-_NO_CONTACTS = ContactManner(
-    manner=LineManner(2, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0),
-    rules=PhaseRules(
-        tolerance=0.0,
-        roughness=0.0,
-        roughness_inside=0.0,
-        sharper=0.0,
-        root=2,
-        counts=np.zeros(0, dtype=np.int64),
-        vectors=np.zeros((0, 0, 0)),
-        matrices=np.zeros((0, 0, 0)),
-        onward=np.zeros((0, 0, 0)),
-    ),
-    grid=NormalGrid(
-        steps=0,
-        derivatives=np.zeros((0, 0, 0)),
-        values=np.zeros((0, 0, 0)),
-        integrals=np.zeros((0, 0, 0)),
-        own=np.zeros((0, 0, 0)),
-        room=np.zeros((0, 0)),
-        motion=np.zeros((0, 0)),
-        extent=np.zeros(2, dtype=np.int64),
-    ),
-    collocates=False,
-    addresses=np.zeros(4, dtype=np.int64),
-)
-"""What takes the place of the contacts of a law without a force."""
 
 _OUTCOMES = np.array([Outcome(ending).code for ending in records.ENDINGS])
 """Codes of outcomes by the numbers of endings."""
@@ -80,7 +57,7 @@ def follow(
     Parameters
     ----------
     problem : Problem
-        Of rigid bodies at rest, whose spheres fall along the normal.
+        Of rigid bodies, which meet in a vacuum on a plate that does not move.
     progress : callable, optional
         Called after each impact with the fraction done, in [0, 1].
     keeps_bounces : bool
@@ -91,8 +68,8 @@ def follow(
             held.enter_context(interpreted())
         drops = _at_start(problem, held)
         manner = _manner_of(problem)
-        energy_in = _mechanical_energy(drops.state.T)
-        start = drops.state[:, [records.GAP, records.VELOCITY]]
+        start = Start(drops.state[:, [records.GAP, records.VELOCITY]], drops.along.copy())
+        energy_in = _energy_of(problem, drops)
         while True:
             room = drops.rows.shape[1]
             pause = room if progress is None else min(int(drops.impacts.max()) + 1, room)
@@ -106,7 +83,7 @@ def follow(
                 drops = _with_more_room(drops)
             if manner.waits:
                 _take_laws_at_touch(problem, drops, held)
-    return _response_of(problem, drops, energy_in, start if keeps_bounces else None)
+    return _response_of(problem, drops, energy_in, start, keeps_bounces)
 
 
 def _is_quick(problem: Problem) -> bool:
@@ -137,8 +114,10 @@ def _at_start(problem: Problem, held: ExitStack) -> Drops:
         laws = np.stack(
             [held.enter_context(coefficients_of(law, size)) for law in _laws(problem)], axis=1
         )
+    spheres, along, friction = _along_at_start(problem, held)
     room = min(problem.impacts or MOST_IMPACTS, _FIRST_ROOM)
-    rows = np.full((size, room, records.COLUMNS), np.nan)
+    columns = records.COLUMNS if problem.oblique is None else records.OBLIQUE_COLUMNS
+    rows = np.full((size, room, columns), np.nan)
     return Drops(
         phases=np.full(size, records.AT_START),
         impacts=np.zeros(size, dtype=np.int64),
@@ -148,7 +127,28 @@ def _at_start(problem: Problem, held: ExitStack) -> Drops:
         laws=laws,
         at_touch=np.zeros(laws[:, 0].shape),
         coefficients=np.zeros(laws[:, 0].shape),
+        spheres=spheres,
+        along=along,
+        friction=friction,
+        taken=np.zeros((size, 2)),
     )
+
+
+def _along_at_start(problem: Problem, held: ExitStack) -> tuple[Floats, Floats, Floats]:
+    """Return the spheres, their states along the plate at the start, and the coefficients of
+    their friction, one drop a row; without columns where drops are along the normal.
+    """
+    oblique = problem.oblique
+    size = math.prod(problem.shape)
+    if oblique is None:
+        none = np.zeros((size, 0))
+        return none, none, none
+    law = oblique.friction
+    along = np.empty((size, len(SphereState._fields)))
+    for column, value in enumerate([*oblique.position, *oblique.velocity, *oblique.spin]):
+        along[:, column] = value
+    friction = held.enter_context(friction_coefficients(law, size))
+    return spheres_of(problem).rows(law), along, friction
 
 
 def _laws(problem: Problem) -> list[ContactLaw]:
@@ -164,28 +164,39 @@ def _laws(problem: Problem) -> list[ContactLaw]:
 
 def _manner_of(problem: Problem) -> DropManner:
     """Return what stays the same for all drops of a problem."""
+    oblique = problem.oblique
     has_force = isinstance(problem.laws[0], CompliantLaw)
+    half_x, half_y = _half_sides(problem)
     return DropManner(
         contacts=_contact_manner(problem),
         has_force=has_force,
         lasts=problem.memory_lasts,
         waits=bool(problem.by_speed) or not has_force,
         stops=_stop_rules(problem),
+        is_oblique=oblique is not None,
+        rubbing=rubbing_of(None if oblique is None else oblique.friction),
+        half_x=half_x,
+        half_y=half_y,
     )
+
+
+def _half_sides(problem: Problem) -> tuple[float, float]:
+    """Return half the sides of the plate [m], infinite where it has no edges."""
+    if problem.oblique is None or problem.oblique.size is None:
+        return np.inf, np.inf
+    length, width = problem.oblique.size
+    return 0.5 * length, 0.5 * width
 
 
 def _contact_manner(problem: Problem) -> ContactManner:
     """Return how the contacts of a problem are solved; of a law without a force there are none."""
     law = problem.laws[0]
     if not isinstance(law, CompliantLaw):
-        return _NO_CONTACTS
-    return ContactManner(
-        manner=common_manner(law, problem.tolerance),
-        rules=gauss_rules(law, problem.tolerance),
-        grid=normal_grid(0),
-        collocates=collocates(law, problem.tolerance),
-        addresses=law_addresses(type(law)),
-    )
+        return NO_CONTACTS
+    steps = 0
+    if problem.oblique is not None and problem.oblique.friction is not None:
+        steps = friction_steps(problem.tolerance)
+    return contact_manner(law, problem.tolerance, steps)
 
 
 def _stop_rules(problem: Problem) -> StopRules:
@@ -197,6 +208,8 @@ def _stop_rules(problem: Problem) -> StopRules:
         rules.append((stop_rules.AFTER_IMPACTS, problem.impacts, records.END_BY_IMPACTS))
     else:
         rules.append((stop_rules.AFTER_IMPACTS, MOST_IMPACTS, records.END_AT_LIMIT))
+    if problem.oblique is not None:
+        rules.append((stop_rules.BESIDE_PLATE, 0.0, records.END_BESIDE))
     kinds, values, endings = zip(*rules, strict=True)
     return StopRules(np.array(kinds), np.array(values, dtype=float), np.array(endings))
 
@@ -251,27 +264,38 @@ def _fraction_done(problem: Problem, drops: Drops) -> float:
     )
 
 
-def _mechanical_energy(state: Floats) -> Floats:
-    """Return the kinetic and potential energy of drops [J]."""
+def _energy_of(problem: Problem, drops: Drops) -> Floats:
+    """Return the kinetic and potential energy of drops at their start [J]."""
+    state = drops.state.T
     velocity = state[records.VELOCITY]
     potential = state[records.GRAVITY] * state[records.GAP]
-    return np.asarray(state[records.MASS] * (0.5 * velocity**2 + potential))
+    energy = np.asarray(state[records.MASS] * (0.5 * velocity**2 + potential))
+    if problem.oblique is None:
+        return energy
+    kinetic, rotation = spheres_of(problem).kinetic(State.of_rows(drops.along))
+    return np.asarray(energy + kinetic + rotation)
 
 
 def _response_of(
-    problem: Problem, drops: Drops, energy_in: Floats, start: Floats | None
+    problem: Problem, drops: Drops, energy_in: Floats, start: Start, keeps_bounces: bool
 ) -> Response:
     """Return the response of drops that have ended.
 
-    `start`: gaps [m] and upward velocities [m/s] at the start, where bounces are kept.
+    `start`: their gaps, velocities and states along the plate at the start.
     """
     state = drops.state.T.copy()  # which all that is told of the drops holds
     end_time = state[records.END_TIME]
     at_rest = _AT_REST[drops.phases]
     if problem.duration is not None:
         end_time[at_rest] = np.maximum(end_time, problem.duration)[at_rest]
-    energy, added = _ledger(state, energy_in, at_rest)
+    along: dict[str, Floats] = {}
+    if problem.oblique is not None:
+        _lie(problem, drops, end_time, np.flatnonzero(at_rest))
+        along = _entries_along(problem, drops, start)
+    energy, added = _ledger(state, energy_in, at_rest, along)
     holds = ledger_holds(energy, added)
+    if problem.oblique is not None:
+        energy |= friction_parts(drops.taken[:, records.RUBBED], drops.taken[:, records.MICROSLIP])
     codes = np.where(holds, _OUTCOMES[drops.phases], Outcome.FAILED.code)
     size = len(codes)
     rest = Rest(
@@ -285,9 +309,43 @@ def _response_of(
     )
     outcomes = tuple([OUTCOMES[code] for code in codes.tolist()])
     bounces = None
-    if start is not None:
+    if keeps_bounces:
         bounces = RecordedDrops(problem, start, drops.impacts, drops.flights, drops.rows, end_time)
     return Response(problem, _table(problem, drops), energy, outcomes, end_time, rest, bounces)
+
+
+def _lie(problem: Problem, drops: Drops, end_time: Floats, resting: Indices) -> None:
+    """Let drops at rest lie on the plate until their runs end [s], or they leave it over an edge,
+    with which their runs end.
+    """
+    oblique = problem.oblique
+    assert oblique is not None
+    if not resting.size:
+        return
+    time = drops.state[resting, records.TIME]
+    sphere = spheres_of(problem).take(resting)
+    before = State.of_rows(drops.along[resting])
+    law = None if oblique.friction is None else oblique.friction.take(resting)
+    elapsed = np.maximum(end_time[resting] - time, 0.0)
+    pressing = drops.state[resting, records.GRAVITY]
+    after, _, times = lie(sphere, before, law, pressing, elapsed[:, None], _half_sides(problem))
+    drops.taken[resting, records.RUBBED] += energy_taken(sphere, before, after)
+    drops.along[resting] = after.rows
+    end_time[resting] = np.minimum(end_time[resting], time + times[:, 0])
+
+
+def _entries_along(problem: Problem, drops: Drops, start: Start) -> dict[str, Floats]:
+    """Return what the motion along the plate adds to the energy ledger [J]."""
+    sphere = spheres_of(problem)
+    state = State.of_rows(drops.along)
+    kinetic, rotation = sphere.kinetic(state)
+    fallen = (sphere.gravity * (state.position - State.of_rows(start.along).position)).sum(axis=0)
+    return {
+        "kinetic_J": kinetic,
+        "potential_J": -sphere.mass * fallen,
+        "rotation_J": rotation,
+        "friction_J": drops.taken[:, records.RUBBED],
+    }
 
 
 def _table(problem: Problem, drops: Drops) -> dict[str, Floats]:
@@ -299,13 +357,20 @@ def _table(problem: Problem, drops: Drops) -> dict[str, Floats]:
         for number, law in enumerate(problem.laws):
             asked = np.reshape(law.nominal_restitution, (-1, 1))
             table[records.ASKED, :, number:] = np.where(happened[:, number:], asked, np.nan)
-    return dict(zip(IMPACT_COLUMNS, table, strict=True))
+    columns = dict(zip(IMPACT_COLUMNS, table, strict=True))
+    if problem.oblique is not None:
+        last = records.ALONG + len(OBLIQUE_IMPACT_COLUMNS)
+        along = drops.rows[:, :most, records.ALONG : last].transpose(2, 0, 1).copy()
+        columns |= dict(zip(OBLIQUE_IMPACT_COLUMNS, along, strict=True))
+    return columns
 
 
-def _ledger(state: Floats, energy_in: Floats, at_rest: Floats) -> tuple[dict[str, Floats], Floats]:
+def _ledger(
+    state: Floats, energy_in: Floats, at_rest: Floats, along: dict[str, Floats]
+) -> tuple[dict[str, Floats], Floats]:
     """Return the energy ledger [J], and the energy that gravity and adhesion added [J].
 
-    It was added to that of the start.
+    It was added to that of the start. `along`: the entries of the motion along the plate.
     """
     mass = state[records.MASS]
     gravity = state[records.GRAVITY]
@@ -322,4 +387,8 @@ def _ledger(state: Floats, energy_in: Floats, at_rest: Floats) -> tuple[dict[str
         "plastic_work_J": state[records.PLASTIC],
         "written_off_at_rest_J": state[records.WRITTEN_OFF],
     }
+    if along:
+        added += np.maximum(-along["potential_J"], 0.0)  # what gravity did down the plate
+    for name, values in along.items():
+        entries[name] = entries[name] + values if name in entries else values
     return close_ledger(energy_in, added, entries), added
