@@ -127,9 +127,7 @@ class DropManner(NamedTuple):
 
     contacts: how contacts are solved. has_force: has the law a force, so that there are any? lasts:
     does the memory of the law last from impact to impact? waits: does a drop wait at its touch for
-    what the law is at the approach speed? stops: rules that end runs in flight. is_oblique: do the
-    spheres move along the plate, too? rubbing: the law of their friction. half_x, half_y: half the
-    sides of the plate [m].
+    what the law is at the approach speed? stops: rules that end runs in flight.
     """
 
     contacts: ContactManner
@@ -137,10 +135,6 @@ class DropManner(NamedTuple):
     lasts: Boolean
     waits: Boolean
     stops: StopRules
-    is_oblique: Boolean
-    rubbing: Rubbing
-    half_x: Real
-    half_y: Real
 
 
 class Drops(NamedTuple):
@@ -153,10 +147,6 @@ class Drops(NamedTuple):
     (B, K): those at the approach speed of a touch, where they depend on it; of a law without a
     force its separation speed [m/s]. coefficients (B, K): of the next impact, with the memory of
     earlier ones.
-
-    Of drops that move along the plate: spheres (B, 8), along (B, 7), the members of `RubbedSphere`
-    and `SphereState`; friction (B, F): coefficients of the law; taken (B, 2): the energies above.
-    Of others they have no columns.
     """
 
     phases: Integers
@@ -167,22 +157,23 @@ class Drops(NamedTuple):
     laws: Cube
     at_touch: Matrix
     coefficients: Matrix
+
+
+class ObliqueDrops(NamedTuple):
+    """What B drops have that move along the plate, too.
+
+    rubbing: the law of their friction. half_x, half_y: half the sides of the plate [m]. spheres (B,
+    8), along (B, 7): the members of `RubbedSphere` and `SphereState`. friction (B, F): coefficients
+    of the law. taken (B, 2): the energies above.
+    """
+
+    rubbing: Rubbing
+    half_x: Real
+    half_y: Real
     spheres: Matrix
     along: Matrix
     friction: Matrix
     taken: Matrix
-
-
-class Drop(NamedTuple):
-    """One of the drops: views of what `Drops` has of it, and of the row of its impact."""
-
-    state: Vector
-    row: Vector
-    coefficients: Vector
-    sphere: Vector
-    along: Vector
-    friction: Vector
-    taken: Vector
 
 
 class FreeFall(NamedTuple):

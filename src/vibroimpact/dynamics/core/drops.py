@@ -58,7 +58,6 @@ from vibroimpact.dynamics.core.drop_records import (
     TOUCH,
     VELOCITY,
     WRITTEN_OFF,
-    Drop,
     DropManner,
     Drops,
     FreeFall,
@@ -66,21 +65,11 @@ from vibroimpact.dynamics.core.drop_records import (
 )
 from vibroimpact.dynamics.core.events import ENDS
 from vibroimpact.dynamics.core.free_fall import next_touch
-from vibroimpact.dynamics.core.friction_records import NO_FRICTION, Rubbing
 from vibroimpact.dynamics.core.law import law_at_touch, law_remembering
 from vibroimpact.dynamics.core.line import CAPTURED, FAILED
-from vibroimpact.dynamics.core.line_records import ContactRoom, LineContact, LineManner
+from vibroimpact.dynamics.core.line_records import LineContact, LineManner
 from vibroimpact.dynamics.core.lines import room_of, solve_pair, with_bodies
-from vibroimpact.dynamics.core.oblique_drops import (
-    fly_along,
-    glide_along,
-    leaves_dent,
-    over_plate,
-    rub_along,
-    rub_at_once,
-)
 from vibroimpact.dynamics.core.records import Law
-from vibroimpact.dynamics.core.rubbing import normal_path
 from vibroimpact.dynamics.core.static import static_indentation
 from vibroimpact.dynamics.core.stop_rules import first_end
 
@@ -91,65 +80,64 @@ _ENDS_AT_PULL_OFF = ENDS.index("pull-off")
 
 @compiled(lambda t: t.void(t.of(DropManner), t.of(Drops), t.integer))
 def follow_drops(manner: DropManner, drops: Drops, pause: int) -> None:
-    """Follow drops until their runs end, or they have had `pause` impacts.
+    """Follow drops along the normal until their runs end, or they have had `pause` impacts.
 
     Where the law depends on the approach speed, or has no force, they are followed until they
     touch; in the next call they go on from there, with what the law is at that speed.
     """
-    addresses = manner.contacts.addresses
-    room = room_of(manner.contacts.rules)
+    contacts = manner.contacts
+    addresses = contacts.addresses
+    room = room_of(contacts.rules)
     next_coefficients = np.zeros(drops.coefficients.shape[1])
     last_law = drops.laws.shape[1] - 1
     for drop in range(len(drops.phases)):
         state = drops.state[drop]
         coefficients = drops.coefficients[drop]
         impacts = drops.impacts[drop]
-        phase = drops.phases[drop]
-        if phase == AT_START:
-            begin(manner.has_force, addresses, drops.laws[drop, 0], coefficients, state)
-            phase = IN_FLIGHT
-        if phase == AT_TOUCH and manner.waits and manner.has_force:
-            remember(addresses, manner.lasts, drops.at_touch[drop], state[DENT], coefficients)
+        phase = ready(manner, drops, drop)
         while phase == IN_FLIGHT or (phase == AT_TOUCH and impacts < pause):
             if phase == IN_FLIGHT:
-                flight = next_touch(state, touch_gap(manner.has_force, addresses, coefficients))
-                if manner.is_oblique:
-                    half = (manner.half_x, manner.half_y)
-                    flight = over_plate(drops.spheres[drop], drops.along[drop], half, flight)
-                phase = fly(manner.stops, flight, impacts, state)
-                if manner.is_oblique:
-                    elapsed = state[TIME] - flight.start
-                    fly_along(drops.spheres[drop], drops.along[drop], elapsed)
+                gap = touch_gap(manner.has_force, addresses, coefficients)
+                phase = fly(manner.stops, next_touch(state, gap), impacts, state)
                 drops.flights[drop] += 1
                 if manner.waits:
                     break
                 continue
-            one = drop_of(drops, drop, impacts)
+            row = drops.rows[drop, impacts]
             impacts += 1
-            one.row[IMPACT] = impacts
-            if manner.has_force:
-                fresh = drops.laws[drop, min(impacts, last_law)]
-                phase = collide(manner, room, one, fresh, next_coefficients)
-            else:
-                phase = collide_at_once(
-                    manner.is_oblique, manner.rubbing, one, drops.at_touch[drop, 0]
-                )
+            row[IMPACT] = impacts
+            if not manner.has_force:
+                phase = collide_at_once(drops.at_touch[drop, 0], state, row)
+                continue
+            law = law_at_touch(addresses, coefficients, room.series, state[CLOSING])
+            bodies = bodies_at_touch(contacts.manner, law, state)
+            _, contact = solve_pair(
+                law, bodies, contacts.rules, contacts.grid, contacts.collocates, room
+            )
+            write_contact(state, row, contact)
+            fresh = drops.laws[drop, min(impacts, last_law)]
+            remember(addresses, manner.lasts, fresh, state[DENT], next_coefficients)
+            phase = leave(manner.waits, law, contact, next_coefficients, state, row)
+            coefficients[:] = next_coefficients
         drops.phases[drop] = phase
         drops.impacts[drop] = impacts
 
 
-@compiled(lambda t: t.of(Drop)(t.of(Drops), t.integer, t.integer))
-def drop_of(drops: Drops, drop: int, impact: int) -> Drop:
-    """Return one of the drops, with the row of an impact, counted from 0."""
-    return Drop(
-        drops.state[drop],
-        drops.rows[drop, impact],
-        drops.coefficients[drop],
-        drops.spheres[drop],
-        drops.along[drop],
-        drops.friction[drop],
-        drops.taken[drop],
-    )
+@compiled(lambda t: t.integer(t.of(DropManner), t.of(Drops), t.integer))
+def ready(manner: DropManner, drops: Drops, drop: int) -> int:
+    """Give a drop that begins, or that has waited at its touch, the coefficients of its law; return
+    its phase then.
+    """
+    addresses = manner.contacts.addresses
+    state = drops.state[drop]
+    coefficients = drops.coefficients[drop]
+    phase = drops.phases[drop]
+    if phase == AT_START:
+        begin(manner.has_force, addresses, drops.laws[drop, 0], coefficients, state)
+        return IN_FLIGHT
+    if phase == AT_TOUCH and manner.waits and manner.has_force:
+        remember(addresses, manner.lasts, drops.at_touch[drop], state[DENT], coefficients)
+    return int(phase)
 
 
 @compiled(lambda t: t.void(t.boolean, t.integers, t.vector, t.vector, t.vector))
@@ -181,54 +169,9 @@ def touch_gap(has_force: bool, addresses: Integers, coefficients: Floats) -> flo
     return -float(level)
 
 
-@compiled(lambda t: t.integer(t.of(DropManner), t.of(ContactRoom), t.of(Drop), t.vector, t.vector))
-def collide(
-    manner: DropManner, room: ContactRoom, drop: Drop, fresh: Floats, next_coefficients: Floats
-) -> int:
-    """Take a drop through a contact, and return its phase then.
-
-    Parameters
-    ----------
-    manner : DropManner
-        What all drops have in common.
-    room : ContactRoom
-        Room in which the contact is solved.
-    drop : Drop
-        The drop; afterwards with the coefficients of the law of the next impact.
-    fresh : array, shape (K,)
-        These without memory.
-    next_coefficients : array, shape (K,)
-        Room.
-    """
-    contacts = manner.contacts
-    addresses = contacts.addresses
-    state = drop.state
-    law = law_at_touch(addresses, drop.coefficients, room.series, state[CLOSING])
-    bodies = bodies_at_touch(contacts.manner, law, state)
-    solved, contact = solve_pair(
-        law, bodies, contacts.rules, contacts.grid, contacts.collocates, room
-    )
-    write_contact(state, drop.row, contact)
-    remember(addresses, manner.lasts, fresh, state[DENT], next_coefficients)
-    phase = leave(manner.waits, law, contact, next_coefficients, state, drop.row)
-    if manner.is_oblique and phase != END_FAILED:
-        if manner.rubbing.kind == NO_FRICTION:
-            glide_along(drop, contact.end.time)
-        else:
-            normal = normal_path(solved, law, bodies, contacts.grid)
-            rub_along(manner.rubbing, drop, normal)
-        if manner.lasts and leaves_dent(drop, contact.deepest):
-            state[DENT] = 0.0
-            remember(addresses, True, fresh, 0.0, next_coefficients)
-    drop.coefficients[:] = next_coefficients
-    return phase
-
-
-@compiled(lambda t: t.integer(t.boolean, t.of(Rubbing), t.of(Drop), t.real))
-def collide_at_once(is_oblique: bool, rubbing: Rubbing, drop: Drop, separation: float) -> int:
+@compiled(lambda t: t.integer(t.real, t.vector, t.vector))
+def collide_at_once(separation: float, state: Floats, row: Floats) -> int:
     """Let a drop rebound at its touch with a separation speed [m/s], and return its phase then."""
-    state = drop.state
-    row = drop.row
     speed = state[CLOSING]
     lost = 0.5 * state[MASS] * (speed * speed - separation * separation)
     state[GAP] = 0.0
@@ -244,11 +187,6 @@ def collide_at_once(is_oblique: bool, rubbing: Rubbing, drop: Drop, separation: 
     row[RELEASE_GAP] = 0.0
     row[RELEASE_VELOCITY] = separation
     write_rebound(state, row)
-    if is_oblique:
-        if rubbing.kind == NO_FRICTION:
-            glide_along(drop, 0.0)
-        else:
-            rub_at_once(rubbing, drop, state[MASS] * (speed + separation))
     if not is_slow(state):
         return IN_FLIGHT
     limit = end_of_bounces(state, row)

@@ -15,9 +15,10 @@ from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS, OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core import stop_rules
-from vibroimpact.dynamics.core.drop_records import DropManner, Drops, StopRules
+from vibroimpact.dynamics.core.drop_records import DropManner, Drops, ObliqueDrops, StopRules
 from vibroimpact.dynamics.core.drops import follow_drops
 from vibroimpact.dynamics.core.line_records import ContactManner
+from vibroimpact.dynamics.core.oblique_drops import follow_oblique_drops
 from vibroimpact.dynamics.core.sphere_records import SphereState
 from vibroimpact.dynamics.energy import close_ledger, ledger_holds
 from vibroimpact.dynamics.law_coefficients import coefficients_of
@@ -67,13 +68,17 @@ def follow(
         if _is_quick(problem):
             held.enter_context(interpreted())
         drops = _at_start(problem, held)
+        oblique = _along_at_start(problem, held)
         manner = _manner_of(problem)
-        start = Start(drops.state[:, [records.GAP, records.VELOCITY]], drops.along.copy())
-        energy_in = _energy_of(problem, drops)
+        start = _start_of(drops, oblique)
+        energy_in = _energy_of(problem, drops, start)
         while True:
             room = drops.rows.shape[1]
             pause = room if progress is None else min(int(drops.impacts.max()) + 1, room)
-            follow_drops(manner, drops, pause)
+            if oblique is None:
+                follow_drops(manner, drops, pause)
+            else:
+                follow_oblique_drops(manner, drops, oblique, pause)
             if progress is not None:
                 progress(_fraction_done(problem, drops))
             moving = drops.phases < 0
@@ -83,7 +88,7 @@ def follow(
                 drops = _with_more_room(drops)
             if manner.waits:
                 _take_laws_at_touch(problem, drops, held)
-    return _response_of(problem, drops, energy_in, start, keeps_bounces)
+    return _response_of(problem, drops, oblique, energy_in, start if keeps_bounces else None)
 
 
 def _is_quick(problem: Problem) -> bool:
@@ -114,7 +119,6 @@ def _at_start(problem: Problem, held: ExitStack) -> Drops:
         laws = np.stack(
             [held.enter_context(coefficients_of(law, size)) for law in _laws(problem)], axis=1
         )
-    spheres, along, friction = _along_at_start(problem, held)
     room = min(problem.impacts or MOST_IMPACTS, _FIRST_ROOM)
     columns = records.COLUMNS if problem.oblique is None else records.OBLIQUE_COLUMNS
     rows = np.full((size, room, columns), np.nan)
@@ -127,28 +131,29 @@ def _at_start(problem: Problem, held: ExitStack) -> Drops:
         laws=laws,
         at_touch=np.zeros(laws[:, 0].shape),
         coefficients=np.zeros(laws[:, 0].shape),
-        spheres=spheres,
-        along=along,
-        friction=friction,
-        taken=np.zeros((size, 2)),
     )
 
 
-def _along_at_start(problem: Problem, held: ExitStack) -> tuple[Floats, Floats, Floats]:
-    """Return the spheres, their states along the plate at the start, and the coefficients of
-    their friction, one drop a row; without columns where drops are along the normal.
-    """
+def _along_at_start(problem: Problem, held: ExitStack) -> ObliqueDrops | None:
+    """Return what the drops of a problem have at their start that move along the plate."""
     oblique = problem.oblique
-    size = math.prod(problem.shape)
     if oblique is None:
-        none = np.zeros((size, 0))
-        return none, none, none
+        return None
+    size = math.prod(problem.shape)
     law = oblique.friction
     along = np.empty((size, len(SphereState._fields)))
     for column, value in enumerate([*oblique.position, *oblique.velocity, *oblique.spin]):
         along[:, column] = value
-    friction = held.enter_context(friction_coefficients(law, size))
-    return spheres_of(problem).rows(law), along, friction
+    half_x, half_y = _half_sides(problem)
+    return ObliqueDrops(
+        rubbing=rubbing_of(law),
+        half_x=half_x,
+        half_y=half_y,
+        spheres=spheres_of(problem).rows(law),
+        along=along,
+        friction=held.enter_context(friction_coefficients(law, size)),
+        taken=np.zeros((size, 2)),
+    )
 
 
 def _laws(problem: Problem) -> list[ContactLaw]:
@@ -164,19 +169,13 @@ def _laws(problem: Problem) -> list[ContactLaw]:
 
 def _manner_of(problem: Problem) -> DropManner:
     """Return what stays the same for all drops of a problem."""
-    oblique = problem.oblique
     has_force = isinstance(problem.laws[0], CompliantLaw)
-    half_x, half_y = _half_sides(problem)
     return DropManner(
         contacts=_contact_manner(problem),
         has_force=has_force,
         lasts=problem.memory_lasts,
         waits=bool(problem.by_speed) or not has_force,
         stops=_stop_rules(problem),
-        is_oblique=oblique is not None,
-        rubbing=rubbing_of(None if oblique is None else oblique.friction),
-        half_x=half_x,
-        half_y=half_y,
     )
 
 
@@ -264,7 +263,15 @@ def _fraction_done(problem: Problem, drops: Drops) -> float:
     )
 
 
-def _energy_of(problem: Problem, drops: Drops) -> Floats:
+def _start_of(drops: Drops, oblique: ObliqueDrops | None) -> Start:
+    """Return drops as they are at their start."""
+    along = np.zeros((len(drops.phases), 0))
+    if oblique is not None:
+        along = oblique.along.copy()
+    return Start(drops.state[:, [records.GAP, records.VELOCITY]], along)
+
+
+def _energy_of(problem: Problem, drops: Drops, start: Start) -> Floats:
     """Return the kinetic and potential energy of drops at their start [J]."""
     state = drops.state.T
     velocity = state[records.VELOCITY]
@@ -272,16 +279,20 @@ def _energy_of(problem: Problem, drops: Drops) -> Floats:
     energy = np.asarray(state[records.MASS] * (0.5 * velocity**2 + potential))
     if problem.oblique is None:
         return energy
-    kinetic, rotation = spheres_of(problem).kinetic(State.of_rows(drops.along))
+    kinetic, rotation = spheres_of(problem).kinetic(State.of_rows(start.along))
     return np.asarray(energy + kinetic + rotation)
 
 
 def _response_of(
-    problem: Problem, drops: Drops, energy_in: Floats, start: Start, keeps_bounces: bool
+    problem: Problem,
+    drops: Drops,
+    oblique: ObliqueDrops | None,
+    energy_in: Floats,
+    start: Start | None,
 ) -> Response:
     """Return the response of drops that have ended.
 
-    `start`: their gaps, velocities and states along the plate at the start.
+    `start`: the drops at their start, where bounces are kept.
     """
     state = drops.state.T.copy()  # which all that is told of the drops holds
     end_time = state[records.END_TIME]
@@ -289,13 +300,13 @@ def _response_of(
     if problem.duration is not None:
         end_time[at_rest] = np.maximum(end_time, problem.duration)[at_rest]
     along: dict[str, Floats] = {}
-    if problem.oblique is not None:
-        _lie(problem, drops, end_time, np.flatnonzero(at_rest))
-        along = _entries_along(problem, drops, start)
+    if oblique is not None:
+        _lie(problem, drops, oblique, end_time)
+        along = _entries_along(problem, oblique)
     energy, added = _ledger(state, energy_in, at_rest, along)
     holds = ledger_holds(energy, added)
-    if problem.oblique is not None:
-        energy |= friction_parts(drops.taken[:, records.RUBBED], drops.taken[:, records.MICROSLIP])
+    if oblique is not None:
+        energy |= friction_parts(*oblique.taken.T)
     codes = np.where(holds, _OUTCOMES[drops.phases], Outcome.FAILED.code)
     size = len(codes)
     rest = Rest(
@@ -309,42 +320,47 @@ def _response_of(
     )
     outcomes = tuple([OUTCOMES[code] for code in codes.tolist()])
     bounces = None
-    if keeps_bounces:
+    if start is not None:
         bounces = RecordedDrops(problem, start, drops.impacts, drops.flights, drops.rows, end_time)
     return Response(problem, _table(problem, drops), energy, outcomes, end_time, rest, bounces)
 
 
-def _lie(problem: Problem, drops: Drops, end_time: Floats, resting: Indices) -> None:
+def _lie(problem: Problem, drops: Drops, oblique: ObliqueDrops, end_time: Floats) -> None:
     """Let drops at rest lie on the plate until their runs end [s], or they leave it over an edge,
     with which their runs end.
     """
-    oblique = problem.oblique
-    assert oblique is not None
+    resting = np.flatnonzero(_AT_REST[drops.phases])
     if not resting.size:
         return
+    assert problem.oblique is not None
     time = drops.state[resting, records.TIME]
     sphere = spheres_of(problem).take(resting)
-    before = State.of_rows(drops.along[resting])
-    law = None if oblique.friction is None else oblique.friction.take(resting)
+    before = State.of_rows(oblique.along[resting])
+    friction = problem.oblique.friction
+    law = None if friction is None else friction.take(resting)
     elapsed = np.maximum(end_time[resting] - time, 0.0)
     pressing = drops.state[resting, records.GRAVITY]
-    after, _, times = lie(sphere, before, law, pressing, elapsed[:, None], _half_sides(problem))
-    drops.taken[resting, records.RUBBED] += energy_taken(sphere, before, after)
-    drops.along[resting] = after.rows
+    half = _half_sides(problem)
+    after, _, times = lie(sphere, before, law, pressing, elapsed[:, None], half)
+    oblique.taken[resting, records.RUBBED] += energy_taken(sphere, before, after)
+    oblique.along[resting] = after.rows
     end_time[resting] = np.minimum(end_time[resting], time + times[:, 0])
 
 
-def _entries_along(problem: Problem, drops: Drops, start: Start) -> dict[str, Floats]:
+def _entries_along(problem: Problem, oblique: ObliqueDrops) -> dict[str, Floats]:
     """Return what the motion along the plate adds to the energy ledger [J]."""
+    assert problem.oblique is not None
     sphere = spheres_of(problem)
-    state = State.of_rows(drops.along)
+    state = State.of_rows(oblique.along)
     kinetic, rotation = sphere.kinetic(state)
-    fallen = (sphere.gravity * (state.position - State.of_rows(start.along).position)).sum(axis=0)
+    none = np.zeros(len(kinetic))
+    place = np.array([value + none for value in problem.oblique.position])
+    fallen = (sphere.gravity * (state.position - place)).sum(axis=0)
     return {
         "kinetic_J": kinetic,
         "potential_J": -sphere.mass * fallen,
         "rotation_J": rotation,
-        "friction_J": drops.taken[:, records.RUBBED],
+        "friction_J": oblique.taken[:, records.RUBBED],
     }
 
 
