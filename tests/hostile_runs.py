@@ -20,9 +20,13 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.bodies.body import Body
+from vibroimpact.contact.friction.laws.coulomb import Coulomb
+from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.contact.registry import find_contact_law
+from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.tabulate import tabulate
 from vibroimpact.errors import VibroimpactError
 from vibroimpact.structures.modal_model import ModalBasis
 
@@ -73,7 +77,8 @@ def seed(given: int) -> int:
 @cache
 def make_ready() -> None:
     """Load what calibrations and their reports are made with, and compute a drop on a rigid and
-    on an elastic plate with its history, so that no input's process loads or compiles them.
+    on an elastic plate with its history and oblique impacts, so that no input's process loads or
+    compiles them.
     """
     import_module("vibroimpact.calibration.calibrate_case")
     import_module("vibroimpact.calibration.report")
@@ -85,6 +90,18 @@ def make_ready() -> None:
         Body(mass=np.inf, contact_offset=0.0, modes=modes),
     ):
         simulate(Problem(laws=(law,), sphere=sphere, plate=plate, speed=1.0, impacts=1)).history()
+    oblique = Oblique(velocity=(0.5, 0.0), friction=Coulomb(coefficient=0.1))
+    for oblique_law in (law, Newton(restitution=np.full(1000, 0.5))):
+        tabulate(
+            Problem(
+                laws=(oblique_law,),
+                sphere=sphere,
+                plate=Body(mass=np.inf, contact_offset=0.0),
+                oblique=oblique,
+                speed=1.0,
+                impacts=1,
+            )
+        )
 
 
 def attack(function: Callable[[Any], object], inputs: Sequence[Any]) -> list[Outcome]:

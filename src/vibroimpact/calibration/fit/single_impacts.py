@@ -21,8 +21,8 @@ from vibroimpact.dynamics.tabulate import tabulate
 _TOLERANCE = 1e-11
 """Relative tolerance of an impact; with a smaller one the impacts are followed one by one."""
 
-AT_ONCE = 4000
-"""Impacts that are computed together: more take memory and no less time."""
+AT_ONCE = 2000
+"""Impacts that are computed together, as `tabulate` does: more are divided there and joined."""
 
 
 def single_impacts(problem: Problem, law: ContactLaw, speeds: Floats) -> dict[str, Floats]:
@@ -130,7 +130,9 @@ def _first_impacts(
     response: Response, quantities: Mapping[str, MatchableQuantity]
 ) -> dict[str, Floats]:
     """Return quantities of the first impacts, NaN of those that could not be computed."""
-    failed = np.array([outcome is Outcome.FAILED for outcome in response.outcomes])
+    failed = np.zeros(len(response.outcomes), dtype=bool)
+    if Outcome.FAILED in response.outcomes:
+        failed[:] = [outcome is Outcome.FAILED for outcome in response.outcomes]
     return {
         name: np.where(failed, np.nan, response.impacts[quantity.column][:, 0])
         for name, quantity in quantities.items()

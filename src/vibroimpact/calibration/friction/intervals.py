@@ -83,8 +83,11 @@ def profile_intervals(residuals: Residuals, best: Minimum, bounds: Bounds, rise:
     furthest = np.where(sides > 0.0, bounds.most[parameter], bounds.least[parameter])
     trials = best_values + sides * _DISTANCES[:, None] * half_widths
     trials = np.where(sides > 0.0, np.minimum(trials, furthest), np.maximum(trials, furthest))
-    trial_ends = np.tile(all_ends, len(_DISTANCES))
-    beyond = (excess(trial_ends, trials.ravel()) > 0.0).reshape(trials.shape)
+    beyond = np.zeros(trials.shape, dtype=bool)
+    for trial, row in zip(trials, beyond, strict=True):
+        inside = np.flatnonzero(~beyond.any(axis=0))
+        if inside.size:
+            row[inside] = excess(inside, trial[inside]) > 0.0
     closed = np.flatnonzero(beyond.any(axis=0))
     first_beyond = beyond.argmax(axis=0)
     inner = np.where(first_beyond > 0, trials[first_beyond - 1, all_ends], best_values)
