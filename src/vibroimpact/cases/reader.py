@@ -240,9 +240,10 @@ def _resolve_paths(table: dict[str, Any], folder: Path) -> dict[str, Any]:
     calibrate = table.get("calibrate")
     if isinstance(calibrate, dict):
         target = calibrate.get("target")
-        file = target.get("file") if isinstance(target, dict) else target
-        if _is_path(file):
-            calibrate["target"] = {"file": _absolute(file, folder)}
+        if _is_path(target):
+            calibrate["target"] = {"file": _absolute(target, folder)}
+        elif isinstance(target, dict) and _is_path(target.get("file")):
+            target["file"] = _absolute(target["file"], folder)
     _resolve_sweep_paths(table.get("sweep"), folder)
     return table
 

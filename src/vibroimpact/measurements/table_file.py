@@ -209,10 +209,21 @@ def header_of(path: str | PathLike[str], columns: str | None = None) -> list[str
     InputError
         If the file can't be read, or is empty.
     """
+    return layout_of(path, columns).header
+
+
+def layout_of(path: str | PathLike[str], columns: str | None = None) -> Layout:
+    """Return how a CSV file is laid out, with the columns that the user states, if any.
+
+    Raises
+    ------
+    InputError
+        If the file can't be read, or is empty.
+    """
     file = Path(path)
     try:
         with closing(text_lines(file, TABLE, _LONGEST, [])) as lines:
-            return table_layout(_numbered(lines), columns).header
+            return table_layout(_numbered(lines), columns)
     except InputError as error:
         raise with_path(file, error) from None
 
@@ -314,7 +325,10 @@ def _no_known_column(layout: Layout, units: Mapping[str, str]) -> str:
     listed = ", ".join(shortened(name, _LONG_NAME) for name in names)
     if len(layout.header) > _MOST_NAMED:
         listed += ", ..."
-    return f"{layout.where}: no column is known among {listed}; {_allowed(units)}.{hint}"
+    return (
+        f"{layout.where}: no column is known among {listed}; {_allowed(units)}.{hint} "
+        f"{layout.name_columns_so}"
+    )
 
 
 def factor_to_si(layout: Layout, cell: str, unit: str | None, wanted: str) -> float:

@@ -98,6 +98,13 @@ class Layout(NamedTuple):
             return 'or state others, such as "time=s,force=N"'
         return remedy_for(self.header)
 
+    @property
+    def name_columns_so(self) -> str:
+        """How a user names columns that are not known, for messages."""
+        if self.is_stated:
+            return 'State columns with these names, such as "time=s,force=N"'
+        return f"Name the columns so, {self.remedy}"
+
     def with_unit(self, name: str, unit: str) -> str:
         """Return how a user states the unit of a column, for messages."""
         if self.is_stated:

@@ -648,6 +648,54 @@ def test_on_the_command_line(
     assert sorted(tmp_path.iterdir()) == before
 
 
+@pytest.mark.parametrize(
+    "keys",
+    [
+        {"columns": "time=s,position=m"},
+        {"channel": "geophone", "contact_duration": 2e-4},
+        {"function": "load cell"},
+    ],
+)
+def test_a_case_file_keeps_what_it_states_of_the_target(
+    keys: dict[str, object], tmp_path: Path
+) -> None:
+    """Columns, channel, contact time and function were lost with the folder of the file."""
+    case = tmp_path / "case.toml"
+    section = {"target": {"file": "record.csv", **keys}}
+    case.write_text(tomli_w.dumps(plain_case(contact=ADAMS, calibrate=section)))
+    for changes in ({}, {"calibrate.degree": 0}):
+        target = vi.calibration.load_calibration(case, changes).case.calibrate.target
+        assert target.file == str(tmp_path / "record.csv")
+        assert {key: getattr(target, key) for key in keys} == keys
+
+
+def test_columns_that_a_case_file_states_are_read(tmp_path: Path) -> None:
+    """The header of the table names none that is known."""
+    rows = record("y", SECONDS, bounces()).partition("\n")[2]
+    file_with(tmp_path, f"seconds since start,y\n{rows}")
+    section = {"target": {"file": "measured.csv", "columns": "time=s,position=m"}, "degree": 0}
+    changes = {"contact": {"law": "newton", "restitution": 0.5}, "drop__gravity": 9.8}
+    case = tmp_path / "case.toml"
+    case.write_text(tomli_w.dumps(plain_case(calibrate=section, **changes)))
+    found = calibrate_case(vi.calibration.load_calibration(case))
+    np.testing.assert_allclose(found.values, 0.7, atol=2e-3)
+
+
+def test_a_file_that_describes_no_impacts_is_told_with_what_was_understood(tmp_path: Path) -> None:
+    file = file_with(tmp_path, "Zeit [s];Weg [mm]\n0;1\n1;2\n")
+    assert (
+        "line 1 was taken for the header: Zeit [s], Weg [mm], separated by semicolons. Name them "
+        'so, or state them beside file: columns = "time=s,position=m"'
+        in refused({"target": {"file": file}})
+    )
+    nothing_known = file_with(tmp_path, "CH1 [V],CH2 [V]\n0,1\n1,2\n")
+    assert 'Name the columns so, or give --columns "ch1=V,ch2=V"' in refused(
+        {"target": {"file": nothing_known}}
+    )
+    stated = {"file": nothing_known, "columns": "x=s,-"}
+    assert 'State columns with these names, such as "time=s,force=N"' in refused({"target": stated})
+
+
 def test_a_folder_that_is_there_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

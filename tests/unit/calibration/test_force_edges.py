@@ -49,7 +49,14 @@ def forces(law: str) -> tuple[vi.Response, Floats, Floats]:
     return response, np.append(time, touches[-1] + 0.02), np.append(force, 0.0)
 
 
-def seen_in(law: str, rate: float, noise: float, seed: int, most: float = np.inf) -> Observations:
+def seen_in(
+    law: str,
+    rate: float,
+    noise: float,
+    seed: int,
+    most: float = np.inf,
+    first_speed: float | None = None,
+) -> Observations:
     response, times, force = forces(law)
     random = np.random.default_rng(seed)
     time = np.arange(random.uniform() / rate, times[-1], 1.0 / rate)
@@ -59,9 +66,9 @@ def seen_in(law: str, rate: float, noise: float, seed: int, most: float = np.inf
         "gravity": float(response.problem.gravity),
     }
     record = np.minimum(sampled, most * force.max())
-    return impacts_in_force(
-        time, record, **given, first_speed=float(response.impacts["approach_speed_m_s"][0])
-    )
+    if first_speed is None:
+        first_speed = float(response.impacts["approach_speed_m_s"][0])
+    return impacts_in_force(time, record, **given, first_speed=first_speed)
 
 
 def off(
@@ -95,6 +102,35 @@ def test_edges_at_once() -> None:
     seen = seen_in("adams-impact", 1e5, 0.02, 1)
     exact = forces("adams-impact")[0].impacts["separation_speed_m_s"][:3]
     np.testing.assert_allclose(seen.wanted["separation_speed"][:3], exact, rtol=1.5e-4)
+
+
+@pytest.mark.parametrize("factor", [0.8, 2.0])
+def test_a_record_of_another_drop_than_the_case_has(factor: float) -> None:
+    """Its first restitution was wrong by that factor, and the last was scaled with it; what was
+    doubted was the scale of the force.
+    """
+    response = forces("adams-impact")[0]
+    speeds = response.impacts["approach_speed_m_s"]
+    seen = seen_in("adams-impact", 1e5, 0.002, 3, first_speed=factor * float(speeds[0]))
+    assert not seen.of_the_drop
+    assert len(seen.labels) == len(seen.speeds) == len(seen.record.pieces)
+    assert seen.labels[0].startswith("impact 2, ")
+    np.testing.assert_allclose(seen.speeds, speeds[1 : len(seen.speeds) + 1], rtol=3e-4)
+    exact = response.impacts["separation_speed_m_s"][1 : len(seen.speeds) + 1]
+    deviations = standard_deviations(seen.noise["separation_speed"])
+    assert np.all(np.abs(seen.wanted["separation_speed"] - exact) <= 2.6 * deviations)
+    (doubt,) = seen.doubts
+    by_impulse = float(doubt.partition("an approach speed of ")[2].partition(" m/s")[0])
+    assert by_impulse == pytest.approx(speeds[0], rel=5e-3)
+    assert f"the drop of the case reaches {factor * speeds[0]:.3g} m/s" in doubt
+
+
+def test_a_record_of_the_same_drop_keeps_its_first_impact() -> None:
+    """Though the height is typed with few digits, and the gain is off."""
+    speed = float(forces("adams-impact")[0].impacts["approach_speed_m_s"][0])
+    seen = seen_in("adams-impact", 1e5, 0.02, 4, first_speed=1.05 * speed)
+    assert seen.of_the_drop
+    assert seen.speeds[0] == 1.05 * speed
 
 
 def test_the_noise_is_part_of_the_deviation() -> None:

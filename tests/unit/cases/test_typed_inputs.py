@@ -18,7 +18,7 @@ from support import plain_case
 from vibroimpact.calibration.bounces.report import impact_table, law_sentences
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.calibration.contact_law.calibration import Calibration
-from vibroimpact.calibration.observed.inputs import EARTH
+from vibroimpact.calibration.observed.inputs import BRIEF, EARTH
 from vibroimpact.cli import main
 from vibroimpact.units.display import known_text
 from vibroimpact.units.written import read_written
@@ -121,7 +121,8 @@ def test_gravity_is_in_speeds_and_in_the_first_impact() -> None:
 
 def test_a_contact_time_is_in_the_restitutions() -> None:
     """A contact that is part of the time between touches makes a restitution larger by (1
-    - e) / T of it.
+    - e) / T of it; it may fall with the speed to the power 1/5, of which the deviation is 1/5 over
+    the root of 3.
     """
     bounces = bounced(0.7, 0.5)
     lasting = vi.signals.Bounces(
@@ -135,14 +136,19 @@ def test_a_contact_time_is_in_the_restitutions() -> None:
         read_written("0 ms +- 0.5 ms", "s"),
     )
     found = vi.calibration.rebounds_of(lasting)
-    assert found.deviation[1:-1] == pytest.approx(5e-4 * 0.3 / bounces.flight[:-1], rel=1e-2)
+    flight = bounces.flight
+    longer = -0.2 / np.sqrt(3.0) * (np.log(flight) - np.log(flight).mean())
+    by_power = 0.7 * longer[:-1] / flight[:-1] - longer[1:] / flight[:-1]
+    assert found.deviation[1:-1] == pytest.approx(
+        5e-4 * np.hypot(0.3 / flight[:-1], by_power), rel=1e-4
+    )
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("law", [0, 1, 2])
 def test_intervals_hold_the_truth_with_inputs_that_are_off(law: int) -> None:
-    """Height, gravity and contact are off by what is stated of them; the restitution is
-    linear in the speed or a power of it.
+    """Height, gravity and contact are off by what is stated of them, and the contact falls with a
+    power of the speed from 0 to 1/5; the restitution is linear in the speed or a power of it.
     """
     random, hits, first = np.random.default_rng(5), 0, 0
     slope = (0.0, -0.02, -0.05)[law]
@@ -161,7 +167,10 @@ def test_intervals_hold_the_truth_with_inputs_that_are_off(law: int) -> None:
         for _ in range(6):
             speeds.append(speed)
             speed = restitution(speed) * speed
-        flights = 2.0 * np.array([*speeds[1:], speed]) / gravity + contact
+        left = np.array([*speeds[1:], speed])
+        power = random.uniform(0.0, 0.2)
+        contacts = contact * (left / np.exp(np.log(left).mean())) ** -power
+        flights = 2.0 * left / gravity + contacts
         time = np.concatenate([[0.0], np.cumsum(flights)]) + random.normal(
             0.0, 1e-5, len(flights) + 1
         )
@@ -178,6 +187,30 @@ def test_intervals_hold_the_truth_with_inputs_that_are_off(law: int) -> None:
         hits += low <= (0.8, slope, slope)[law] <= high
     assert 0.92 <= first / 300 <= 0.98
     assert 0.92 <= hits / 300 <= 0.985
+
+
+@pytest.mark.parametrize("contact", [3e-5, 1e-4])
+def test_intervals_hold_the_truth_where_contacts_take_longer_at_lower_speeds(
+    contact: float,
+) -> None:
+    """As Hertz's do; of a record so clean that the contact time, of which nothing is typed, is all
+    that is uncertain, the fitted constant was off by 14 standard deviations.
+    """
+    random = np.random.default_rng(8)
+    hits = []
+    for _ in range(300):
+        speeds = 3.4 * 0.82 ** np.arange(7)
+        flights = 2.0 * speeds[1:] / GRAVITY + contact * speeds[:-1] ** -0.2
+        time = np.concatenate([[0.0], np.cumsum(flights)]) + random.normal(0.0, 3e-8, 7)
+        series = vi.signals.Bounces(
+            RANDOM, time, np.full(7, 3e-8), np.ones(7), np.zeros(0), (), (), BRIEF
+        )
+        found = vi.calibration.rebounds_of(series)
+        low, high = found.laws[0].intervals(0.95)[0]
+        hits.append(low <= 0.82 <= high)
+        known = np.isfinite(found.restitution)
+        assert np.all(np.abs(found.restitution - 0.82)[known] <= 2.0 * found.deviation[known])
+    assert np.mean(hits) >= 0.92
 
 
 def test_no_more_digits_than_the_interval_carries() -> None:

@@ -18,6 +18,11 @@ _UNLIKE = 1.25
 """Ratio of the first restitution to the second one, or its inverse, above which a doubt is raised.
 """
 
+_CONTACT_POWER = 0.2 / np.sqrt(3.0)
+"""Standard deviation of the power of the speed with which the contact time falls: anywhere from 0,
+of a linear spring, to 1/5, of Hertz's contact.
+"""
+
 
 @dataclass(frozen=True)
 class Rebounds(Reported, reported_in="vibroimpact.calibration.bounces.report"):
@@ -291,9 +296,10 @@ def _input_effects(
     approach: Floats,
     separation: Floats,
 ) -> tuple[Floats, Floats]:
-    """Return what one standard deviation of each input changes in the speeds, (3, n) [m/s].
+    """Return what one standard deviation of each input changes in the speeds, (4, n) [m/s].
 
-    The inputs are gravity, height and contact time; the speeds are those before and after.
+    The inputs are gravity, height, contact time and how that goes with the speed; the speeds are
+    those before and after.
     """
     # the first speed is that after the fall, sqrt(2 g h); the others are those of flights, g T / 2
     after_fall = np.zeros(len(approach))
@@ -304,15 +310,22 @@ def _input_effects(
     after_flight = np.append(0.0, approach[1:])
     g = gravity.value
     # a longer contact leaves less time for the flight
-    by_contact = -0.5 * g * contact_time.value.deviation
+    by_contact = np.full(len(separation), -0.5 * g * contact_time.value.deviation)
+    # the contact of each impact differs from the one that is given for all
+    longest = float(np.hypot(contact_time.value, contact_time.value.deviation))
+    logarithm = np.log(separation[:-1])
+    part = _CONTACT_POWER * np.append(logarithm - logarithm.mean(), np.nan)
+    by_power = -0.5 * g * longest * part
     of_approach = [
         (after_flight + 0.5 * after_fall) * gravity.value.deviation / g,
         0.5 * relative_height_deviation * after_fall,
-        np.append(0.0, np.full(len(after_flight) - 1, by_contact)),
+        np.append(0.0, by_contact[:-1]),
+        np.append(0.0, by_power[:-1]),
     ]
     of_separation = [
         separation * gravity.value.deviation / g,
         0.0 * separation,
-        by_contact + 0.0 * separation,
+        by_contact,
+        by_power,
     ]
     return np.array(of_approach), np.array(of_separation)

@@ -269,9 +269,15 @@ def _gauss_newton(
         values = tunable.allowed.clip(powers @ coefficients)
         if np.all(np.abs(values - previous) <= _CONVERGED * np.abs(values).max()):
             return coefficients, covariance, scatter, len(independent) - coefficient_count
-    lower = "take a lower degree, or " if coefficient_count > 1 else ""
+    if coefficient_count < distinct(observations.speeds):
+        # a polynomial far from exact measurements is the usual cause
+        degree = "take a higher degree, or "
+    elif coefficient_count > 1:
+        degree = "take a lower degree, or "
+    else:
+        degree = ""
     raise ComputationError(
-        f"the fit of {tunable.name} does not settle; {lower}look at the measurements"
+        f"the fit of {tunable.name} does not settle; {degree}look at the measurements"
     )
 
 

@@ -48,6 +48,14 @@ _MOST = 1.2
 _GAIN = 0.03
 """Deviation of impulses from times of flight above which a warning is given."""
 
+_OTHER_DROP = 0.1
+"""Deviation of the first approach speed by its impulse from that of the drop, as a fraction of it,
+above which the record is that of another drop.
+"""
+
+_SURE = 5.0
+"""Standard deviations by which it has to deviate as well."""
+
 
 class ImpactTimes(NamedTuple):
     """Begins of the impacts and their standard deviations by noise [s].
@@ -159,12 +167,15 @@ def impacts_in_force(
         ends=np.hypot(sampling, [pulse.end_deviation for pulse in pulses]),
         begins=np.hypot(sampling, impact_times.deviations),
     )
+    other_drop = _of_another_drop(pulses, flight_speeds, mass, gravity, first_speed)
     separation, deviation, doubts = _separations(
-        pulses, flight_speeds, edges, mass, gravity, first_speed
+        pulses, flight_speeds, edges, mass, gravity, first_speed, scaled_from=1 if other_drop else 0
     )
     labels = [label_of(begin) for begin, _ in runs]
     _check_speeds(speeds, separation, labels, timed)
     doubts += _sampling_doubts(pulses, clipped)
+    if other_drop:
+        doubts = (other_drop, *doubts)
     per_contact = flight_speeds.start_slope * [pulse.duration for pulse in pulses[:timed]]
     speed_noise, noise = _noise(pulses, flight_speeds, deviation, by_law, lost, per_contact)
     wanted = {
@@ -173,17 +184,20 @@ def impacts_in_force(
     }
     if clipped:
         del wanted["max_force"], noise["max_force"]
+    kept = slice(1 if other_drop else 0, None)
+    numbered = [f"impact {number}, {label}" for number, label in enumerate(labels, 1)]
     return Observations(
-        speeds,
-        wanted,
-        speed_noise,
-        noise,
+        speeds[kept],
+        {name: values[kept] for name, values in wanted.items()},
+        speed_noise[kept],
+        {name: sources[kept] for name, sources in noise.items()},
         deviations_known=True,
-        labels=tuple(f"impact {number}, {label}" for number, label in enumerate(labels, 1)),
+        labels=tuple(numbered[kept]),
+        of_the_drop=not other_drop,
         noise_from="the noise of the record",
         doubts=doubts,
         flights=flights,
-        record=Record("force", tuple(pulse.samples for pulse in pulses)),
+        record=Record("force", tuple(pulse.samples for pulse in pulses[kept])),
     )
 
 
@@ -340,10 +354,12 @@ def _separations(
     mass: float,
     gravity: float,
     first_speed: float,
+    scaled_from: int,
 ) -> tuple[Floats, Floats, tuple[str, ...]]:
     """Return separation speeds [m/s], their standard deviations by noise, and warnings.
 
     A speed before another impact follows from the time of flight, the last one from its impulse.
+    The impulses from impact `scaled_from` on tell the scale of the force.
     """
     impact_count = len(pulses)
     # equal to the number of impacts if the record ends within a further one
@@ -354,7 +370,11 @@ def _separations(
     scale_deviation = 0.0
     if timed:
         scale, scale_deviation = _force_scale(
-            pulses[:timed], flight_speeds.start, approach, mass, gravity
+            pulses[scaled_from:timed],
+            flight_speeds.start[scaled_from:],
+            approach[scaled_from:],
+            mass,
+            gravity,
         )
         if abs(scale - 1.0) > _GAIN:
             corrected = ""
@@ -395,6 +415,37 @@ def _separations(
         np.append(flight_speeds.start, last_separation),
         np.append(deviation, last_deviation),
         tuple(doubts),
+    )
+
+
+def _of_another_drop(
+    pulses: Sequence[Pulse],
+    flight_speeds: EndSpeeds,
+    mass: float,
+    gravity: float,
+    first_speed: float,
+) -> str:
+    """Return a warning if the first impact is not that of the drop, by its impulse, else nothing.
+
+    The impacts between two flights tell the scale of the force.
+    """
+    timed = len(flight_speeds.start)
+    first, later = pulses[0], pulses[1:timed]
+    if first.clipped or not later or all(pulse.clipped for pulse in later):
+        return ""
+    scale, deviation = _force_scale(
+        later, flight_speeds.start[1:], flight_speeds.end[: timed - 1], mass, gravity
+    )
+    change = scale * first.impulse / mass
+    speed = change - flight_speeds.start[0] - gravity * first.duration
+    by_noise = change * np.hypot(deviation / scale, first.impulse_deviation / first.impulse)
+    if abs(speed - first_speed) <= max(_OTHER_DROP * first_speed, _SURE * by_noise):
+        return ""
+    return (
+        f"the impulse of the first impact is that of an approach speed of {speed:.3g} m/s, and "
+        f"the drop of the case reaches {first_speed:.3g} m/s: the record is taken to be that of "
+        "another drop, and the first impact only begins the first flight; look at the height or "
+        "speed of the drop"
     )
 
 

@@ -114,6 +114,9 @@ class JointFlights:
     timing : float
         Standard deviation of the time of a sample [s], by which it scatters the more the faster the
         sphere is; 0 where none shows.
+    curvature : array, shape (n,), optional
+        Offset of the zero from its line at each apex [m], one standard deviation of a zero that
+        drifts along a parabola and makes the levels scatter; None where they do not.
     """
 
     apex_heights: Floats
@@ -129,6 +132,7 @@ class JointFlights:
     scatter: float = 0.0
     misfit: float = 0.0
     timing: float = 0.0
+    curvature: Floats | None = None
 
     def offset(self, time: Floats) -> Floats:
         """Return the offset of positions at times of the record [m]."""
@@ -147,7 +151,10 @@ class JointFlights:
         rows = [
             self.estimated.index(_SHARED + 2 * flight) for flight in range(len(self.apex_heights))
         ]
-        return self.covariance_root[rows]
+        sources = self.covariance_root[rows]
+        if self.curvature is None:
+            return sources
+        return np.column_stack([sources, self.curvature])
 
     @property
     def shared_deviations(self) -> dict[str, float]:
@@ -189,7 +196,7 @@ def separate_flights(
     sample_count = sum(len(time) for time, _ in samples)
     # the unknowns are two per flight, and the clock
     freedom = max(sample_count - 2 * len(samples) - 1, 1)
-    flights = replace(start, zero=0.0, drift=0.0, timing=0.0)
+    flights = replace(start, zero=0.0, drift=0.0, timing=0.0, scatter=0.0, curvature=None)
     noise = start.noise
     for _ in range(_PASSES):  # the weight of what is known of the clock depends on the noise
         flights = _solved(samples, flights, flight_model, (_CLOCK,), noise)
@@ -264,7 +271,8 @@ def meeting_flights(
 
     With one meeting the zero is estimated, with more its drift as well; without any, both are zero.
     Where the levels at which the flights meet scatter about a line by more than the noise, that
-    scatter is estimated too, and widens all deviations.
+    scatter is estimated too, and widens all deviations: those of the meetings, as of a sphere that
+    is not round, and those of the apexes, as of a zero that drifts along a parabola.
 
     Parameters
     ----------
@@ -328,7 +336,20 @@ def meeting_flights(
             high = middle
         if high < 1.01 * low:
             break
-    return replace(joint, scatter=high)
+    return replace(joint, scatter=high, curvature=high * _parabola_at_apexes(joint, radius))
+
+
+def _parabola_at_apexes(joint: JointFlights, radius: float) -> Floats:
+    """Return a parabola at the apexes whose mean square at the meetings about a line is 1, (n,)."""
+    # both parts of a flight take as long as the root of its height
+    spans = np.sqrt(np.maximum(joint.apex_heights - radius, 0.0))
+    parts = spans[:-1] / (spans[:-1] + spans[1:])
+    times = (joint.apex_times - joint.reference_time) / np.ptp(joint.apex_times)
+    meetings = times[:-1] + parts * np.diff(times)
+    line = np.polynomial.Polynomial.fit(meetings, meetings**2, 1)
+    residual = meetings**2 - line(meetings)
+    size = np.sqrt(residual @ residual / (len(meetings) - 2))
+    return np.asarray((times**2 - line(times)) / size)
 
 
 def _exceeds(squares: float, freedom: int) -> bool:

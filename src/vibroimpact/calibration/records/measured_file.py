@@ -44,7 +44,7 @@ from vibroimpact.measurements.record_file import (
     read_universal_record,
 )
 from vibroimpact.measurements.recorded_table import RecordedChannel, recorded_channels, rising
-from vibroimpact.measurements.table_file import factor_to_si, header_of
+from vibroimpact.measurements.table_file import factor_to_si, header_of, layout_of
 from vibroimpact.measurements.table_layout import Layout
 from vibroimpact.signals.bounces.find import find_bounces
 from vibroimpact.signals.reading.coded_sound import FORMATS as CODED_SOUND
@@ -139,9 +139,11 @@ def file_measurement(case: Case, target: FileTarget, by_rebound: bool) -> Measur
             return _naming_file(target.file, measurement, table.doubts)
         if "acceleration" in table.columns:
             raise InputError(_ACCELERATION_OF_SPHERE)
+        layout = layout_of(target.file, target.columns)
         raise InputError(
             f"the columns {', '.join(table.columns)} do not describe impacts; a file has "
-            f"{_DESCRIPTIONS}"
+            f"{_DESCRIPTIONS}; {layout.understood}. Name them so, or state them beside file: "
+            'columns = "time=s,position=m"'
         )
     except InputError as error:
         raise in_file(target.file, error) from None

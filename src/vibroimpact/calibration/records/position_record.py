@@ -47,7 +47,7 @@ _CLOCK_OFF = 0.1
 _LARGE_ZERO = 0.1
 """Zero above which a warning is given, as a fraction of the radius."""
 
-_LARGE_SCATTER = 0.02
+_LARGE_SCATTER = 0.002
 """Scatter of the level above which a warning is given, as a fraction of the lowest rebound."""
 
 _LARGE_CLOCK = 0.005
