@@ -130,8 +130,8 @@ def test_the_table_of_bounds(whole: Bound) -> None:
         *per_cent(far),
         100.0 * exact["one impact"].upper,
     )
-    # about half of the error or more is the scatter
-    assert exact["one impact"].upper < 0.55 * far.lower
+    # at least a third of the error is the scatter
+    assert exact["one impact"].upper < far.lower * 2.0 / 3.0
     says(
         GUIDE,
         "with a bandwidth of 1 kHz the lowest error is at most {} %, with 8 kHz {} %",
@@ -235,7 +235,7 @@ def errors_of(falls: Falls) -> tuple[tuple[float, float], tuple[float, float], f
         measured, deviation = (
             np.stack([part[impulse], part["duration"]], axis=1) for part in (values, noise)
         )
-        found.append(bayes_error(measured, deviation, classes))
+        found.append(bayes_error(measured, deviation, classes, falls.rocks))
     near, far = found
     return per_cent(near), per_cent(far), 100.0 * max(near.standard_error, far.standard_error)
 
@@ -259,9 +259,9 @@ def test_the_ratio_of_the_moduli_decides() -> None:
     mixed, mixed_far, _ = errors_of(with_moduli(between(COAL.values()), between(ROCK.values())))
     says(
         GUIDE,
-        "| both spread as in published tables | {} to {} % | {} to {} % |",
+        "| both spread as in published tables | {} to {} % | {} % |",
         *mixed,
-        *mixed_far,
+        mixed_far[1],
     )
 
 

@@ -68,11 +68,14 @@ def test_the_front_page_counts_results() -> None:
     assert met == 1 + 4 + 8
     says(
         README,
-        "A further {}, among them all other results of rigid bodies, agree with what a "
-        "stated cause gives",
+        "A further {}, among them all other results of rigid bodies, differ, but a hypothesis",
         explained,
     )
-    says(README, "a value or a range, and {}, all of elastic bodies, with none", missed)
+    says(
+        README,
+        "such as peaks read from samples; {}, all of elastic bodies, agree with nothing",
+        missed,
+    )
 
 
 def test_results_that_are_not_reproduced_are_of_elastic_bodies() -> None:

@@ -302,6 +302,7 @@ def test_cases_are_those_that_can_be_loaded(printed: Printed) -> None:
     cases = printed("cases")["cases"]
     assert {name: case["name"] for name, case in cases.items()} == vi.shipped_cases()
     assert cases["paper:sweep"]["command"] == "sweep"
+    assert cases["signals:coal-gangue"]["command"] == "dataset"
 
 
 def test_laws_give_the_numbers_of_their_parameters(printed: Printed) -> None:

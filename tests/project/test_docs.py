@@ -48,7 +48,7 @@ SMALLER = {
     "vibroimpact recognise falls -o new-plates --group plate": "--seeds 1 --folds 2",
     "vibroimpact recognise today --model recognised -o counted": "",
     "vibroimpact dataset signals:river-plate -o grains": "--samples 60",
-    "vibroimpact bound grains -o told": "",
+    "vibroimpact bound grains -o bound": "",
     "vibroimpact recognise grains -o recognised --group rock": "--seeds 1 --folds 2 --force",
     "vibroimpact identify coal.toml records.csv -o found": "",
     "vibroimpact correlate plate.toml taps.csv --hammer force -o compared": "",
@@ -79,7 +79,7 @@ NOT_RUN = {
     "vibroimpact dataset signals:coal-gangue -o all-falls": "is run with another folder",
     "vibroimpact recognise all-falls -o recognised": "is run with another folder",
     "vibroimpact recognise all-falls -o new-plates --group plate": "is run with another folder",
-    'pip install "vibroimpact[app]"': "installs",
+    'python -m pip install ".[app]"': "installs",
     "vibroimpact serve": "runs until it is ended; tests/page tries it",
 }
 """Commands of the pages that no test here runs, and why: they install, change a shell, or

@@ -149,6 +149,20 @@ def test_unequal_shares_and_three_classes() -> None:
     assert abs(found.upper - known) < 3.0 * found.standard_error
 
 
+def test_other_falls_of_a_rock_do_not_betray_its_class() -> None:
+    """Four falls of each rock are alike, and what is measured does not depend on the class:
+    the error is a half, though the falls of the same rock would name the class.
+    """
+    rng = np.random.default_rng(5)
+    rocks = np.repeat(np.arange(1000), 4)
+    classes = np.repeat(rng.choice(2, 1000), 4)
+    measured = np.repeat(rng.standard_normal((1000, 1)), 4, axis=0)
+    noise = np.full_like(measured, 1e-4)
+    found = bayes_error(measured, noise, classes, rocks)
+    assert abs(found.upper - 0.5) < 4.0 * found.standard_error
+    assert bayes_error(measured, noise, classes).upper < 0.2
+
+
 def test_coal_rings_like_gangue_of_twice_its_size(agrees: Agrees) -> None:
     """Contact times on steel at 8.8 m/s: 261 us of coal of 25 mm, 145 and 291 us of
     gangue of 25 and 50 mm.

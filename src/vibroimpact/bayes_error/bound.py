@@ -223,7 +223,7 @@ def _error(
     classes = np.unique(falls.classes, return_inverse=True)[1]
     measured = np.stack([values[name] for name in observation.quantities], axis=1)
     deviation = np.stack([noise[name] for name in observation.quantities], axis=1)
-    return bayes_error(measured, deviation, classes, tested, seed)
+    return bayes_error(measured, deviation, classes, falls.rocks, tested, seed)
 
 
 def _without_scatter(

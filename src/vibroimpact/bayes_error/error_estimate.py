@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.arrays import Floats, Integers
+from vibroimpact.arrays import Bools, Floats, Integers
 
 _PAIRS_IN_MEMORY = 4_000_000  # of a fall that is tested and another one
 
@@ -36,16 +36,21 @@ class BayesError(NamedTuple):
 
 
 def bayes_error(
-    measured: Floats, noise: Floats, classes: Integers, tested: int = 2000, seed: int = 0
+    measured: Floats,
+    noise: Floats,
+    classes: Integers,
+    rocks: Integers | None = None,
+    tested: int = 2000,
+    seed: int = 0,
 ) -> BayesError:
     r"""Return bounds of the Bayes error of telling the class of a fall from what is measured of it.
 
-    The posterior of the classes, given a noisy measurement y of fall i, follows from all other
-    falls j of the population, which are draws of the prior:
+    The posterior of the classes, given a noisy measurement y of fall i, follows from the falls j of
+    all other rocks of the population, which are draws of the prior:
 
     .. math::
 
-        P(c \mid y) \propto \sum_{j \ne i,\; c_j = c} \prod_k \mathcal{N}(y_k;\, s_{jk},
+        P(c \mid y) \propto \sum_{r_j \ne r_i,\; c_j = c} \prod_k \mathcal{N}(y_k;\, s_{jk},
         \sigma_{jk})
 
     The mean of :math:`1 - \max_c P(c \mid y)` is below the Bayes error, as each posterior is fitted
@@ -62,6 +67,8 @@ def bayes_error(
         Standard deviation of the noise of each.
     classes : array of int, shape (falls,)
         Class of each fall.
+    rocks : array of int, shape (falls,), optional
+        Number of the rock of each fall; without it each fall is of another rock.
     tested : int, default 2000
         Number of falls, drawn at random, for which the posterior is computed.
     seed : int, default 0
@@ -81,6 +88,7 @@ def bayes_error(
     """
     rng = np.random.default_rng(seed)
     falls = len(classes)
+    rock_numbers = np.arange(falls) if rocks is None else rocks
     chosen = rng.choice(falls, min(tested, falls), replace=False)
     noisy = measured[chosen] + noise[chosen] * rng.standard_normal((len(chosen), measured.shape[1]))
     names, codes = np.unique(classes, return_inverse=True)
@@ -91,7 +99,12 @@ def bayes_error(
     block = max(1, _PAIRS_IN_MEMORY // falls)
     for first in range(0, len(chosen), block):
         in_block = chosen[first : first + block]
-        weight = _likelihoods(noisy[first : first + block], measured, noise, in_block)
+        weight = _likelihoods(
+            noisy[first : first + block],
+            measured,
+            noise,
+            rock_numbers[in_block, None] != rock_numbers,
+        )
         posterior = weight @ is_of_class / weight.sum(axis=1, keepdims=True)
         least_errors.append(1.0 - posterior.max(axis=1))
         wrong.append(posterior.argmax(axis=1) != codes[in_block])
@@ -108,7 +121,7 @@ def bayes_error(
     )
 
 
-def _likelihoods(noisy: Floats, measured: Floats, noise: Floats, tested: Integers) -> Floats:
+def _likelihoods(noisy: Floats, measured: Floats, noise: Floats, counted: Bools) -> Floats:
     """Return how likely measurements are for each fall, relative to the likeliest one.
 
     Parameters
@@ -117,8 +130,8 @@ def _likelihoods(noisy: Floats, measured: Floats, noise: Floats, tested: Integer
         The measurements.
     measured, noise : array, shape (falls, quantities)
         What is measured of each fall without noise, and the standard deviation of the noise.
-    tested : array of int, shape (tested,)
-        The falls that were measured: a fall is no neighbour of itself.
+    counted : array of bool, shape (tested, falls)
+        Whether a fall is a neighbour of the one measured; those of the same rock are none.
 
     Returns
     -------
@@ -127,5 +140,5 @@ def _likelihoods(noisy: Floats, measured: Floats, noise: Floats, tested: Integer
     logarithm = np.zeros((len(noisy), len(measured)))
     for clean, deviation, value in zip(measured.T, noise.T, noisy.T, strict=True):
         logarithm -= 0.5 * ((value[:, None] - clean) / deviation) ** 2 + np.log(deviation)
-    logarithm[np.arange(len(noisy)), tested] = -np.inf
+    logarithm[~counted] = -np.inf
     return np.asarray(np.exp(logarithm - logarithm.max(axis=1, keepdims=True)))

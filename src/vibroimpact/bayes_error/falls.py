@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.bodies.ball import ball_volume, mean_density
 from vibroimpact.cases.case import Case
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
@@ -17,7 +17,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.studies.computation.compute_points import compute_points
 from vibroimpact.studies.computation.study import Study
 from vibroimpact.studies.planning.axes import Values
-from vibroimpact.studies.planning.population import CLASS
+from vibroimpact.studies.planning.population import CLASS, ROCK
 from vibroimpact.studies.planning.sweep import Sweep
 from vibroimpact.studies.planning.swept_keys import case_at
 
@@ -34,6 +34,8 @@ class Falls:
     ----------
     classes : array of str
         Class of the rock.
+    rocks : array of int
+        Number of the rock; falls of one rock are alike.
     radius, density, modulus : array
         Of the sphere [m], its mean density [kg/m^3], and Young's modulus of its material [Pa].
     speed, restitution, duration : array
@@ -41,6 +43,7 @@ class Falls:
     """
 
     classes: NDArray[Any]
+    rocks: Integers
     radius: Floats
     density: Floats
     modulus: Floats
@@ -75,7 +78,7 @@ def falls_of_study(study: Study) -> Falls:
     InputError
         If the study has no classes.
     """
-    if CLASS not in study.labels:
+    if not {CLASS, ROCK} <= set(study.labels):
         raise InputError(
             f"{study.path.parent}: this study has no classes; a bound needs a population, "
             "as vibroimpact dataset computes it"
@@ -84,7 +87,7 @@ def falls_of_study(study: Study) -> Falls:
         np.asarray(study.values(name), dtype=float) for name in _COLUMNS
     )
     table = {key: value for key, value in study.table.items() if key != "sweep"}
-    return _falls(study.labels[CLASS], table, study.coordinates, speed, restitution, duration)
+    return _falls(study.labels, table, study.coordinates, speed, restitution, duration)
 
 
 def falls_of_sweep(sweep: Sweep) -> Falls:
@@ -120,7 +123,7 @@ def falls_of_sweep(sweep: Sweep) -> Falls:
     )
     for values in (speed, restitution, duration):
         values[failed] = np.nan
-    return _falls(sweep.plan.labels[CLASS], table, columns, speed, restitution, duration)
+    return _falls(sweep.plan.labels, table, columns, speed, restitution, duration)
 
 
 def _only(table: Mapping[str, Any], keys: Collection[str]) -> dict[str, Any]:
@@ -128,7 +131,7 @@ def _only(table: Mapping[str, Any], keys: Collection[str]) -> dict[str, Any]:
 
 
 def _falls(
-    classes: NDArray[Any],
+    labels: Mapping[str, NDArray[Any]],
     table: Mapping[str, Any],
     columns: Mapping[str, Values],
     speed: Floats,
@@ -137,7 +140,7 @@ def _falls(
 ) -> Falls:
     """Return the falls that touched, with radius and mass from the values of the keys."""
     first = case_at(table, {key: values[0] for key, values in columns.items()})
-    count = len(classes)
+    count = len(labels[CLASS])
     radius = np.broadcast_to(columns.get("sphere.radius", first.sphere.radius), count).astype(float)
     density = _material_property("density", first, table, columns, count)
     modulus = _material_property("youngs_modulus", first, table, columns, count)
@@ -146,7 +149,8 @@ def _falls(
         density = np.broadcast_to(mean_density(mass, radius), count).astype(float)
     touched = np.isfinite(speed) & np.isfinite(duration)
     return Falls(
-        classes=classes[touched],
+        classes=labels[CLASS][touched],
+        rocks=labels[ROCK][touched],
         radius=radius[touched],
         density=density[touched],
         modulus=modulus[touched],

@@ -34,6 +34,8 @@ def shipped_cases_document() -> dict[str, Any]:
 
 def command_for(case: dict[str, Any]) -> str:
     """Return the command that a case is meant for: it has a section of its own in the case."""
+    if "classes" in case.get("sweep", {}):
+        return "dataset"
     for command in ("sweep", "calibrate"):
         if command in case:
             return command

@@ -154,6 +154,7 @@ def _make_room() -> None:
 
 
 def _remove_empty_folders() -> None:
-    for folder in code_folder().iterdir():
+    # of all folders below: the store itself may not have been made yet
+    for folder in code_folder().glob("*/"):
         with suppress(OSError):  # it has files
             folder.rmdir()

@@ -244,7 +244,7 @@ class Response(Reported, reported_in="vibroimpact.runs.response_report"):
         most : int, optional
             How many points there may be, about. Of a longer history the first impacts keep all of
             theirs, as many as fill a quarter; each flight and each part of a contact after them
-            keeps its ends and equally many points between. Each impact takes about 170 points, and
+            keeps its ends and equally many points between. Each impact takes about 220 points, and
             each point 100 bytes, or twice as many where bodies vibrate.
         columns : collection of str, optional
             As in `at`.

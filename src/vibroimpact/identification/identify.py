@@ -20,7 +20,11 @@ from vibroimpact.identification.measured import Measured, is_own_run, measured_o
 from vibroimpact.identification.plate import Place, Plate, plate_of
 from vibroimpact.identification.polarity import upright
 from vibroimpact.identification.pulses import Search
-from vibroimpact.identification.setup import SetupErrors
+from vibroimpact.identification.setup import (
+    MOUNTED_RESONANCES,
+    SetupErrors,
+    mounted_resonance,
+)
 from vibroimpact.identification.sphere import SphereFit, fit_sphere
 from vibroimpact.report.reported import Reported
 from vibroimpact.signals.baseline import without_baseline
@@ -117,7 +121,10 @@ class Identification(Reported, reported_in="vibroimpact.identification.report"):
     @property
     def certain(self) -> tuple[str, ...]:
         """What is taken as certain."""
-        return (*self.plate.errors.certain, *_ALWAYS_CERTAIN)
+        of_setup = self.plate.errors.certain
+        if all(mounted_resonance(sensor) is None for sensor in self.plate.problem.sensors):
+            of_setup = tuple(item for item in of_setup if item != MOUNTED_RESONANCES)
+        return (*of_setup, *_ALWAYS_CERTAIN)
 
 
 def identify(

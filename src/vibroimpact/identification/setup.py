@@ -18,12 +18,13 @@ from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError
 from vibroimpact.structures.modal_model import ModalBasis
 
+MOUNTED_RESONANCES = "mounted resonances of accelerometers"
 _MEANINGS = {
     "sensor_place": "positions of the sensors",
     "gain": "sensitivities of the sensors",
     "thickness": "thickness of the plate",
     "modulus": "modulus of the plate",
-    "resonance": "mounted resonances of accelerometers",
+    "resonance": MOUNTED_RESONANCES,
 }
 _OPTIONS = {
     "sensor_place": "--sensor-error",
@@ -223,6 +224,12 @@ def _of_other_mass(rigid: ModalBasis, deflection: float) -> ModalBasis:
         participation=rigid.participation / deflection,
         points={name: deflection * shapes for name, shapes in rigid.points.items()},
     )
+
+
+def mounted_resonance(sensor: Sensor) -> float | None:
+    """Return the mounted resonance of an accelerometer [Hz]; None of one without, and of others."""
+    instrument = sensor.instrument
+    return instrument.resonance if isinstance(instrument, Accelerometer) else None
 
 
 def with_resonance(sensor: Sensor, difference: float) -> Sensor:

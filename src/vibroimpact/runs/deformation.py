@@ -12,12 +12,6 @@ from vibroimpact.results.result import Result
 from vibroimpact.units.display import digits, fixed, text
 
 _SENTENCES = {
-    "consistent": (
-        "Consistent: the contact law contains the local and the quasi-static deformation of "
-        "the sphere, and modes of the sphere add "
-        "only the dynamic part; the static compliance that the modes of the plate lack is "
-        "in series with the law. No compliance is counted twice."
-    ),
     "superposed": (
         "Superposed: the contact law and the modes of the bodies are in series, as in a "
         "multibody program with flexible bodies. Where a "
@@ -34,7 +28,25 @@ _SENTENCES = {
 
 def treatment_sentence(result: Result) -> str:
     """Return a sentence on the treatment of local indentation; empty if the result states none."""
-    return _SENTENCES.get(str(result.deformation.get("treatment", "")), "")
+    treatment = str(result.deformation.get("treatment", ""))
+    if treatment == "consistent":
+        return _consistent_sentence(result)
+    return _SENTENCES.get(treatment, "")
+
+
+def _consistent_sentence(result: Result) -> str:
+    """Return what the law contains and what is added to it, of the bodies that are elastic."""
+    clauses = ["the contact law contains the local deformation"]
+    if "sphere_modal_compliance_m_N" in result.deformation:
+        clauses = [
+            "the contact law contains the local and the quasi-static deformation of the sphere, "
+            "and modes of the sphere add only the dynamic part"
+        ]
+    if "plate_static_compliance_m_N" in result.deformation:
+        clauses.append(
+            "the static compliance that the modes of the plate lack is in series with the law"
+        )
+    return f"Consistent: {'; '.join(clauses)}. No compliance is counted twice."
 
 
 def counted_twice(result: Result) -> float:

@@ -401,6 +401,13 @@ def test_the_least_recently_used_code_is_removed(
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_store_that_was_never_made_is_cleared(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(PLACE, str(tmp_path / "never made"))
+    assert code_store.clear_code() == 0
+
+
 def test_a_full_disk_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: object) -> None:
         raise OSError(28, "No space left on device")

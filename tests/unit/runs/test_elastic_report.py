@@ -457,6 +457,7 @@ def test_a_sphere_alone_has_no_pictures_of_a_plate() -> None:
         )
     )
     assert result.deflection is None
+    assert "of the plate" not in treatment_sentence(result)
     assert list(result.peaks) == ["sphere"]
     assert not {"plate_motion", "deflection"} & names_of(result)
     assert "sphere_energy" in names_of(result)
