@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -68,7 +69,7 @@ class Contact:
     motion, where that drives friction, until it is followed.
     """
 
-    pieces: list[Piece]
+    pieces: Sequence[Piece]
     outcome: NDArray[np.int8]
     duration: Floats
     final_delta: Floats
