@@ -81,7 +81,7 @@ bench: $(VENV)/installed
 	for script in benchmarks/bench_*.py; do $(BIN)/python $$script || exit 1; done
 
 docs: $(VENV)/installed
-	$(BIN)/python -m vibroimpact.cases.resolved_types
+	$(BIN)/python -m vibroimpact.cases.sections.resolved_types
 	$(BIN)/python -m vibroimpact.law_sheets.pages docs
 	$(BIN)/python -m vibroimpact.cli.completion_words
 	$(BIN)/python -m vibroimpact.cli.feature_page docs

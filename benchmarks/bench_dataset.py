@@ -29,7 +29,7 @@ from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.dynamics.sensors.overload import finer_rate
 from vibroimpact.structures.recipe import modal_model_of
 from vibroimpact.structures.static_compliance import static_compliance
-from vibroimpact.studies.compute_points import compute_points
+from vibroimpact.studies.computation.compute_points import compute_points
 
 PLATES = 3
 """Plates of each study."""

@@ -23,13 +23,13 @@ import numpy as np
 
 from vibroimpact.materials import find_material
 from vibroimpact.structures.damping import ConstantRatio
-from vibroimpact.structures.lattice import box_mesh
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.lattice import box_mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.plate_mesh import plate_mesh
+from vibroimpact.structures.finite_elements.structure import plate_structure, solid_structure
 from vibroimpact.structures.modal_model import modal_basis, modal_model
 from vibroimpact.structures.modes import ElasticSystem
-from vibroimpact.structures.plate_mesh import plate_mesh
 from vibroimpact.structures.store import key_of, load_model, save_model
-from vibroimpact.structures.structure import plate_structure, solid_structure
 from vibroimpact.structures.supports.support import held_by
 
 SIZE, MODES = (0.52, 0.42, 0.008), 60

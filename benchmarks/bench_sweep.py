@@ -26,11 +26,11 @@ from typing import Any
 import vibroimpact as vi
 from vibroimpact.cases.elastic.coupling import carried_modes
 from vibroimpact.structures.store import receive
-from vibroimpact.studies.compute_points import compute_points
-from vibroimpact.studies.dask_workers import dask_workers
-from vibroimpact.studies.ledger import Span
-from vibroimpact.studies.run_chunks import run_chunks
-from vibroimpact.studies.workers import Workers, processes, this_process
+from vibroimpact.studies.computation.compute_points import compute_points
+from vibroimpact.studies.computation.dask_workers import dask_workers
+from vibroimpact.studies.computation.ledger import Span
+from vibroimpact.studies.computation.run_chunks import run_chunks
+from vibroimpact.studies.computation.workers import Workers, processes, this_process
 
 ROCK = {"density": 1380, "youngs_modulus": "2.26 GPa", "poissons_ratio": 0.28}
 RIGID: dict[str, Any] = {

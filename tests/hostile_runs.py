@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
+from importlib import import_module
 from multiprocessing.connection import Pipe
 from typing import Any
 
@@ -70,10 +71,12 @@ def seed(given: int) -> int:
 
 
 @cache
-def compile_once() -> None:
-    """Compute a drop on a rigid and on an elastic plate with its history, so that no
-    input's process compiles the solvers.
+def make_ready() -> None:
+    """Load what calibrations and their reports are made with, and compute a drop on a rigid and
+    on an elastic plate with its history, so that no input's process loads or compiles them.
     """
+    import_module("vibroimpact.calibration.calibrate_case")
+    import_module("vibroimpact.calibration.report")
     modes = ModalBasis(np.array([200.0]), np.array([0.01]), np.array([0.5]), np.zeros((1, 3)))
     law = find_contact_law("hertz")(stiffness=1e9)
     sphere = Body(mass=0.1, contact_offset=0.02)
@@ -88,7 +91,7 @@ def attack(function: Callable[[Any], object], inputs: Sequence[Any]) -> list[Out
     """Return what came of each input: of a hang or a crash too, which end the process
     that works on it and no other.
     """
-    compile_once()
+    make_ready()
     outcomes: list[Outcome] = []
     while len(outcomes) < len(inputs):
         outcomes += _in_a_child(function, inputs[len(outcomes) :])

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 import vibroimpact as vi
-from vibroimpact.cases.rigid_problem import rigid_problem
+from vibroimpact.cases.rigid.rigid_problem import rigid_problem
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.identification.plate import Plate, compliance_error, plate_of, with_compliance

@@ -14,7 +14,7 @@ from support import plain_case
 from vibrating import drop_on, random_modes
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.results.result import Result, result_of
-from vibroimpact.structures.lattice import box_mesh
+from vibroimpact.structures.finite_elements.lattice import box_mesh
 
 HOSTILE = "<script>alert(1)</script>\"'&<b>"
 """What must be shown as it is."""

@@ -11,7 +11,7 @@ import numpy as np
 
 import vibroimpact as vi
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.observations import from_table
+from vibroimpact.calibration.observed.observations import from_table
 from vibroimpact.contact.friction.registry import find_friction_law
 from vibroimpact.contact.pair import ContactPair, effective_modulus, effective_shear_modulus
 

@@ -14,13 +14,13 @@ import numpy as np
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.calibration.bounce_record import impacts_in_bounces
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
-from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.force_record import impacts_in_force
-from vibroimpact.calibration.noise import scaled, standard_deviations
-from vibroimpact.calibration.observations import Observations
-from vibroimpact.calibration.position_record import impacts_in_position
+from vibroimpact.calibration.contact_law.calibration import Calibration
+from vibroimpact.calibration.observed.noise import scaled, standard_deviations
+from vibroimpact.calibration.observed.observations import Observations
+from vibroimpact.calibration.records.bounce_record import impacts_in_bounces
+from vibroimpact.calibration.records.force_record import impacts_in_force
+from vibroimpact.calibration.records.position_record import impacts_in_position
 from vibroimpact.signals.bounces.find import find_bounces
 from vibroimpact.signals.reading.equal_steps import behind_decimals
 

@@ -9,9 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.structures.element_kinds import ELEMENT_KINDS
-from vibroimpact.structures.lattice import box_mesh, merged
-from vibroimpact.structures.mesh import ElementBlock, Mesh
+from vibroimpact.structures.finite_elements.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.finite_elements.lattice import box_mesh, merged
+from vibroimpact.structures.finite_elements.mesh import ElementBlock, Mesh
 
 PYRAMIDS = ("pyramid5", "pyramid13", "pyramid14")
 

@@ -58,5 +58,5 @@ from .regenerate import remake_report as remake_report
 from .results.folder import load_result as load_result
 from .results.result import Result as Result
 from .results.result import result_of as result_of
-from .structures.mesh import Mesh as Mesh
+from .structures.finite_elements.mesh import Mesh as Mesh
 from .structures.modal_model import ModalBasis as ModalBasis

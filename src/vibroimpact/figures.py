@@ -89,10 +89,10 @@ def _writer_of(
     folder: Path, formats: Sequence[str], progress: Callable[[float], None]
 ) -> Callable[[Path], None]:
     """Return the function that writes the figures of a result folder or a study."""
-    from vibroimpact.studies.study_folder import is_study
+    from vibroimpact.studies.computation.study_folder import is_study
 
     if is_study(folder):
-        from vibroimpact.studies.study import load_study
+        from vibroimpact.studies.computation.study import load_study
 
         charts = load_study(folder).report.charts
 

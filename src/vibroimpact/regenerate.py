@@ -34,9 +34,9 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     'theory'
     """
     # imported here, since a run does not need them
+    from vibroimpact.studies.computation.study import load_study
+    from vibroimpact.studies.computation.study_folder import is_study
     from vibroimpact.studies.report.write_report import write_study_report
-    from vibroimpact.studies.study import load_study
-    from vibroimpact.studies.study_folder import is_study
 
     folder = Path(directory)
     recover(folder)

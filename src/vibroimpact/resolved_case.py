@@ -4,7 +4,7 @@ A problem carries the resolved case that it was made from, and a result the one 
 holds. Numbers may be arrays, with one value per drop of a batch. Keys that do not apply to a case
 are absent.
 
-`vibroimpact.cases.resolved_types` writes this file from the schema.
+`vibroimpact.cases.sections.resolved_types` writes this file from the schema.
 """
 
 from __future__ import annotations

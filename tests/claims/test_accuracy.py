@@ -14,7 +14,7 @@ from agreement import TOLD
 from golden import PROBLEMS
 from stated_numbers import says
 from support import plain_case
-from vibroimpact.cases.limit import limits
+from vibroimpact.cases.limits.limit import limits
 from vibroimpact.cases.validity import modes_left_out
 from vibroimpact.cases.validity.finite_sphere import force_lacking
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, CLOSURE_USUAL

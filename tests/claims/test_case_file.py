@@ -15,13 +15,13 @@ import pytest
 import vibroimpact as vi
 from stated_numbers import ROOT, says
 from vibroimpact.bodies.elastic import plate_recipe
-from vibroimpact.calibration.section import CalibrateSection
+from vibroimpact.calibration.observed.section import CalibrateSection
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.fields import elastic_body, quantities, size_limits
-from vibroimpact.cases.limit import limits
-from vibroimpact.cases.rigid_problem import touch_speed
+from vibroimpact.cases.limits.limit import limits
+from vibroimpact.cases.rigid.rigid_problem import touch_speed
 from vibroimpact.cli import main
 from vibroimpact.dynamics.problem import MOST_IMPACTS
 from vibroimpact.materials import find_material

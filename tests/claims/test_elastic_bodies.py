@@ -13,7 +13,8 @@ from vibroimpact.materials import find_material
 from vibroimpact.meshes import tied_surfaces
 from vibroimpact.meshes.geometry import GEOMETRY, MOST_SECONDS
 from vibroimpact.meshes.text_files import MESH
-from vibroimpact.structures import stated_materials, static_compliance, store
+from vibroimpact.structures import static_compliance, store
+from vibroimpact.structures.finite_elements import stated_materials
 from vibroimpact.structures.plate_waves import bending_error, stretching_error, wave_numbers
 from vibroimpact.structures.recipe import (
     PlateOfPlates,

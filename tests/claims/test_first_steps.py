@@ -10,8 +10,8 @@ import pytest
 import vibroimpact as vi
 from stated_numbers import ROOT, says
 from support import blocks
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import numbers_of
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import numbers_of
 from vibroimpact.cases.validity.plate_mesh import plate_mesh_error
 
 PAGE = "docs/first-steps.md"

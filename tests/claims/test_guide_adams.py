@@ -11,8 +11,8 @@ import pytest
 import vibroimpact as vi
 from stated_numbers import says
 from support import blocks, example
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import numbers_of
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import numbers_of
 from vibroimpact.cli import main
 
 PAGE = "docs/guides/adams-damping.md"

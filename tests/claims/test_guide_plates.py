@@ -9,8 +9,8 @@ from scipy.integrate import solve_ivp
 import vibroimpact as vi
 from stated_numbers import says
 from support import example, names_of_page
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import numbers_of
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import numbers_of
 from vibroimpact.cases.validity.modes_left_out import _TRUNCATED
 
 PAGE = "docs/guides/plate-thickness.md"

@@ -8,8 +8,8 @@ import pytest
 import vibroimpact as vi
 from stated_numbers import says
 from support import example
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import numbers_of
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import numbers_of
 
 PAGE = "docs/guides/accelerometer.md"
 PICTURES = example("pictures_of_guides")

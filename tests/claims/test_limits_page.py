@@ -11,7 +11,7 @@ from stated_numbers import says
 from support import plain_case
 from vibroimpact.cases import sensor_doubts
 from vibroimpact.cases.elastic import modes
-from vibroimpact.cases.limit import limits
+from vibroimpact.cases.limits.limit import limits
 from vibroimpact.cases.validity import edge, fast_flight, modes_left_out
 from vibroimpact.cases.validity.adhesion import WORK_OF_ADHESION
 from vibroimpact.cases.validity.finite_sphere import force_lacking

@@ -9,7 +9,7 @@ import numpy as np
 import vibroimpact as vi
 from stated_numbers import says
 from support import plain_case
-from vibroimpact.cases.rigid_problem import touch_speed
+from vibroimpact.cases.rigid.rigid_problem import touch_speed
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.dynamics import air, liquid
 from vibroimpact.dynamics.core import phase_contact

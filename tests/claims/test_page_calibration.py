@@ -23,12 +23,12 @@ from oblique_measured import (
 )
 from stated_numbers import says
 from support import blocks, module_at, plain_case
-from vibroimpact.calibration import bounce_record, force_record, position_record
-from vibroimpact.calibration.calibrated_drops import MOST_IMPACTS
-from vibroimpact.calibration.evaluate_measurement import _MATTERS
-from vibroimpact.calibration.inputs import BRIEF, EARTH
-from vibroimpact.calibration.noise import standard_deviations
-from vibroimpact.calibration.typed_inputs import _NAMED
+from vibroimpact.calibration.fit.calibrated_drops import MOST_IMPACTS
+from vibroimpact.calibration.fit.typed_inputs import _NAMED
+from vibroimpact.calibration.observed.inputs import BRIEF, EARTH
+from vibroimpact.calibration.observed.noise import standard_deviations
+from vibroimpact.calibration.records import bounce_record, force_record, position_record
+from vibroimpact.calibration.records.evaluate_measurement import _MATTERS
 from vibroimpact.contact.pair import effective_shear_modulus
 from vibroimpact.measurements.table_file import TABLE
 from vibroimpact.signals.bounces import chain, touches

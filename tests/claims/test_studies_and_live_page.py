@@ -20,9 +20,9 @@ from vibroimpact.app.served_cases import (
 )
 from vibroimpact.app.server import MOST_WINDOWS
 from vibroimpact.cli.studies import MOST_BYTES_UNCONFIRMED, MOST_DROPS_UNCONFIRMED
-from vibroimpact.studies.design import MOST_DROPS
+from vibroimpact.studies.planning.design import MOST_DROPS
+from vibroimpact.studies.report.sensitivity import MOST_LEFT_OUT
 from vibroimpact.studies.report.tables import doubt_sentences
-from vibroimpact.studies.sensitivity import MOST_LEFT_OUT
 
 STUDIES = "docs/studies.md"
 LIVE = "docs/live-page.md"

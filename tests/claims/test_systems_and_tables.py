@@ -6,7 +6,7 @@ from math import hypot, pi
 
 import vibroimpact as vi
 from stated_numbers import says
-from vibroimpact.cases.plate_motion import _FEWEST, _MOST
+from vibroimpact.cases.rigid.plate_motion import _FEWEST, _MOST
 
 SYSTEMS = "docs/systems.md"
 SHAKEN = "docs/shaken.md"

@@ -15,7 +15,7 @@ from deck_values import check_file_names, named, said
 from exported_drops import STEEL
 from vibroimpact.exporting.export_format import ExportFormat, export_formats, find_export_format
 from vibroimpact.files.plain_names import one_line, plain_names, plain_words
-from vibroimpact.structures.lattice import box_mesh
+from vibroimpact.structures.finite_elements.lattice import box_mesh
 
 NAMES = [
     *("", " ", ".", "..", "../../etc/passwd", "/", "\\", "a\\", "C:\\nul"),

@@ -18,11 +18,11 @@ import vibroimpact as vi
 from support import one_in
 from vibroimpact.calibration.calibrate_case import calibration_of
 from vibroimpact.cases.build import resolved_case
-from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.reader import load_table, shipped_cases
+from vibroimpact.cases.rigid.pair import contact_pair
 from vibroimpact.cases.wrong_units.detect import slips, swept_slips
 from vibroimpact.cases.wrong_units.hertz_estimate import HertzEstimate
-from vibroimpact.studies.sweep_file import sweep_of
+from vibroimpact.studies.planning.sweep_file import sweep_of
 
 ROOT = Path(__file__).parents[2]
 

@@ -13,13 +13,13 @@ import vibroimpact as vi
 from hostile_runs import failures, number, seed
 from mutations import case_files
 from seeds import write_files
-from vibroimpact.calibration.section import check_target
+from vibroimpact.calibration.observed.section import check_target
 from vibroimpact.cases.build import check_drop
 from vibroimpact.cases.reader import load_table, prefix_errors
-from vibroimpact.cases.rigid_problem import deforms
+from vibroimpact.cases.rigid.rigid_problem import deforms
 from vibroimpact.report.console import TerminalConsole
 from vibroimpact.runs.case_explained import case_explained
-from vibroimpact.studies.explain_sweep import explain_sweep
+from vibroimpact.studies.planning.explain_sweep import explain_sweep
 
 
 def shown(renderable: object) -> None:

@@ -25,7 +25,7 @@ from vibroimpact.bayes_error.falls import falls_of_study
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.exporting.load_drop import load_drop
 from vibroimpact.paper.report.folder import reproduce_paper
-from vibroimpact.studies.ledger import LEDGER
+from vibroimpact.studies.computation.ledger import LEDGER
 
 
 class Change(NamedTuple):

@@ -29,8 +29,13 @@ from vibroimpact.paper.report.reproduction import load_reproduction
 from vibroimpact.results.deflection import Deflection
 from vibroimpact.results.result import Result, result_of
 from vibroimpact.structures.store import load_entry, save_entry
-from vibroimpact.studies.chunk_file import ChunkResult, chunk_path, read_chunk, write_chunk
-from vibroimpact.studies.ledger import Span, make_ledger, open_ledger
+from vibroimpact.studies.computation.chunk_file import (
+    ChunkResult,
+    chunk_path,
+    read_chunk,
+    write_chunk,
+)
+from vibroimpact.studies.computation.ledger import Span, make_ledger, open_ledger
 from written_results import write_result
 
 

@@ -11,8 +11,8 @@ from hostile_runs import failures, number, seed
 from mutations import studies
 from seeds import Table
 from vibroimpact.runs.case_explained import case_explained
-from vibroimpact.studies.compute_points import compute_points
-from vibroimpact.studies.explain_sweep import explain_sweep
+from vibroimpact.studies.computation.compute_points import compute_points
+from vibroimpact.studies.planning.explain_sweep import explain_sweep
 
 
 def compute_a_few(table: Table) -> None:

@@ -22,7 +22,7 @@ from vibroimpact.calibration.calibrate_case import calibration_of
 from vibroimpact.calibration.targets import target_of
 from vibroimpact.cases.build import problem_of
 from vibroimpact.measurements.table_file import read_table_file
-from vibroimpact.studies.sweep_file import sweep_of
+from vibroimpact.studies.planning.sweep_file import sweep_of
 
 HEIGHTS = "impact,rebound_height [mm]\n1,310\n2,190\n3,130\n"
 IMPACTS = "approach_speed_m_s,restitution,restitution_standard_deviation\n1,0.7,0.01\n2,0.65,0.02\n3,0.6,0.02\n"

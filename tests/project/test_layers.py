@@ -51,11 +51,11 @@ LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 
 
 # rooms whose folders import each other; in all others they do not
-ENTWINED = {"calibration", "cases", "dynamics", "structures", "studies"}
+ENTWINED = {"dynamics"}
 
 # a room that people work in may have a section of the case, which is part of the case file and lies
 # beside the work that it asks for
-SECTIONS = {"vibroimpact.calibration.section", "vibroimpact.studies.section"}
+SECTIONS = {"vibroimpact.calibration.observed.section", "vibroimpact.studies.planning.section"}
 
 
 @cache

@@ -13,7 +13,7 @@ import pytest
 
 import vibroimpact as vi
 from agreement import Against, Agrees
-from vibroimpact.calibration.differences import differences
+from vibroimpact.calibration.contact_law.differences import differences
 
 AGAINST = Against(
     "the paper, calibrated damping of the Adams IMPACT function",

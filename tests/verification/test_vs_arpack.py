@@ -11,11 +11,11 @@ from scipy.sparse.linalg import eigsh
 
 from agreement import Against, Agrees
 from vibroimpact.materials import find_material
-from vibroimpact.structures.lattice import box_mesh
+from vibroimpact.structures.finite_elements.lattice import box_mesh
+from vibroimpact.structures.finite_elements.plate_mesh import plate_mesh
+from vibroimpact.structures.finite_elements.sphere_mesh import sphere_mesh
+from vibroimpact.structures.finite_elements.structure import plate_structure, solid_structure
 from vibroimpact.structures.modes import ElasticSystem
-from vibroimpact.structures.plate_mesh import plate_mesh
-from vibroimpact.structures.sphere_mesh import sphere_mesh
-from vibroimpact.structures.structure import plate_structure, solid_structure
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.patch import Patch
 from vibroimpact.structures.supports.support import held_by

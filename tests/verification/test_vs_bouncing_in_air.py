@@ -15,8 +15,8 @@ from agreement import Against, Agrees
 from oracles.bouncing_in_air import Bounces, bounces, clift_gauvin, schiller_naumann
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
-from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.fluid_flights import FluidFlights
+from vibroimpact.calibration.contact_law.calibration import Calibration
+from vibroimpact.calibration.records.fluid_flights import FluidFlights
 
 AGAINST = Against(
     "numerical integration of a sphere bouncing in air (SciPy)",

@@ -18,11 +18,11 @@ import vibroimpact as vi
 from agreement import Against, Agrees
 from support import one_in, plain_case
 from vibrating import STIFFNESS, drop_on, random_modes
-from vibroimpact.calibration.calibrate import calibrate
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
-from vibroimpact.calibration.matchable import MATCHABLE
-from vibroimpact.calibration.observations import from_table
-from vibroimpact.calibration.tunables import modal_damping
+from vibroimpact.calibration.contact_law.calibrate import calibrate
+from vibroimpact.calibration.fit.tunables import modal_damping
+from vibroimpact.calibration.observed.matchable import MATCHABLE
+from vibroimpact.calibration.observed.observations import from_table
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import contact_laws

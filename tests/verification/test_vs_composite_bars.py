@@ -18,9 +18,9 @@ import vibroimpact as vi
 from agreement import Against, Agrees
 from support import plain_case
 from vibroimpact.materials import Material
-from vibroimpact.structures.lattice import box_mesh
-from vibroimpact.structures.mesh import Mesh
-from vibroimpact.structures.structure import solid_structure
+from vibroimpact.structures.finite_elements.lattice import box_mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.structure import solid_structure
 
 AGAINST = Against(
     "closed forms of bars and beams of two materials, and the assembly of scikit-fem",

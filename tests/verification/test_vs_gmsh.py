@@ -13,8 +13,8 @@ from agreement import Against, Agrees
 from vibroimpact.errors import InputError
 from vibroimpact.meshes.geometry import mesh_geometry
 from vibroimpact.meshes.mesh_file import load_mesh
-from vibroimpact.structures.geometry import check_mesh, mass_properties
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.geometry import check_mesh, mass_properties
+from vibroimpact.structures.finite_elements.mesh import Mesh
 
 try:
     import gmsh

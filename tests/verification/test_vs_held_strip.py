@@ -10,8 +10,8 @@ import pytest
 from agreement import Against, Agrees
 from oracles.held_strip import rim_compliance
 from vibroimpact.materials import Material
-from vibroimpact.structures.bed import bed_stiffness, end_compliance
-from vibroimpact.structures.plate_element import shear_factor
+from vibroimpact.structures.finite_elements.bed import bed_stiffness, end_compliance
+from vibroimpact.structures.finite_elements.plate_element import shear_factor
 
 AGAINST = Against(
     "elastic half strip supported at its edge, plane-strain finite elements",

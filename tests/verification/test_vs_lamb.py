@@ -20,10 +20,10 @@ from agreement import Against, Agrees
 from support import one_in
 from vibroimpact.bodies.elastic import sphere_recipe
 from vibroimpact.materials import Material, find_material
+from vibroimpact.structures.finite_elements.sphere_mesh import sphere_mesh
+from vibroimpact.structures.finite_elements.structure import solid_structure
 from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.recipe import Reduction, computed_model
-from vibroimpact.structures.sphere_mesh import sphere_mesh
-from vibroimpact.structures.structure import solid_structure
 from vibroimpact.structures.supports.support import held_by
 
 AGAINST = Against(

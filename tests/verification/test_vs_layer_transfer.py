@@ -16,9 +16,9 @@ import vibroimpact as vi
 from agreement import Against, Agrees
 from oracles.three_dimensional_plate import Elastic, thickness_modes
 from vibroimpact.cases.elastic.coupling import coupling_of
+from vibroimpact.structures.finite_elements.surface import Side
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe
 from vibroimpact.structures.supports.edge import EDGES, Edge
-from vibroimpact.structures.surface import Side
 from vibroimpact.structures.transfer_compliance import computed_transfer, transfer_compliances
 
 AGAINST = Against(

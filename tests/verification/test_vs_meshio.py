@@ -12,8 +12,8 @@ from vibroimpact.materials import Material
 from vibroimpact.meshes.write_abaqus import write_abaqus
 from vibroimpact.meshes.write_nastran import write_nastran
 from vibroimpact.meshes.write_vtu import write_vtu
-from vibroimpact.structures.element_kinds import ELEMENT_KINDS
-from vibroimpact.structures.mesh import ElementBlock, Mesh
+from vibroimpact.structures.finite_elements.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.finite_elements.mesh import ElementBlock, Mesh
 
 meshio = pytest.importorskip("meshio")
 

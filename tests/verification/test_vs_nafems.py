@@ -17,9 +17,13 @@ from scipy.linalg import eigh
 
 from agreement import Against, Agrees
 from vibroimpact.materials import Material
+from vibroimpact.structures.finite_elements.plate_mesh import plate_mesh, solid_plate_mesh
+from vibroimpact.structures.finite_elements.structure import (
+    Structure,
+    plate_structure,
+    solid_structure,
+)
 from vibroimpact.structures.modes import ElasticSystem
-from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
-from vibroimpact.structures.structure import Structure, plate_structure, solid_structure
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.support import Support, held_by
 

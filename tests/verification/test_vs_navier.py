@@ -20,11 +20,15 @@ from agreement import Against, Agrees
 from support import one_in
 from vibroimpact.bodies.elastic import plate_recipe
 from vibroimpact.materials import Material, find_material
+from vibroimpact.structures.finite_elements.plate_mesh import plate_mesh, solid_plate_mesh
+from vibroimpact.structures.finite_elements.rectangle import Disc
+from vibroimpact.structures.finite_elements.structure import (
+    Structure,
+    plate_structure,
+    solid_structure,
+)
 from vibroimpact.structures.modes import ElasticSystem
-from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
 from vibroimpact.structures.recipe import Reduction, computed_model
-from vibroimpact.structures.rectangle import Disc
-from vibroimpact.structures.structure import Structure, plate_structure, solid_structure
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.support import Support, held_by
 

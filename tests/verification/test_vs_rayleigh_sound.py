@@ -15,8 +15,8 @@ from scipy.special import j1
 import vibroimpact as vi
 from agreement import Against, Agrees
 from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, rms, sampled
-from vibroimpact.structures.mesh import Mesh
-from vibroimpact.structures.plate_mesh import plate_mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.plate_mesh import plate_mesh
 from vibroimpact.structures.recipe import (
     PlateOfPlates,
     PlateOfSolids,

@@ -17,9 +17,9 @@ import pytest
 from agreement import Against, Agrees
 from vibroimpact.bodies.elastic import plate_recipe
 from vibroimpact.materials import Material
+from vibroimpact.structures.finite_elements.structure import solid_structure
 from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.recipe import PlateOfSolids, Reduction, computed_model
-from vibroimpact.structures.structure import solid_structure
 from vibroimpact.structures.supports.bar import Bar
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.patch import Patch, RectangularPatch

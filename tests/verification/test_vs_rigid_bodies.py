@@ -23,7 +23,7 @@ from oracles.adams import Bounce, Motion
 from oracles.adams_commands import read_commands
 from oracles.adams_dataset import read_dataset, read_solver_commands
 from support import one_in
-from vibroimpact.calibration.file_contents import CALIBRATION, calibration_table
+from vibroimpact.calibration.contact_law.file_contents import CALIBRATION, calibration_table
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cli import main
 from vibroimpact.exporting.export_format import find_export_format

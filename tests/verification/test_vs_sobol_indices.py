@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from agreement import Against, Agrees
-from vibroimpact.studies.axes import Spaced
-from vibroimpact.studies.design import Asked
 from vibroimpact.studies.designs.saltelli import plan
-from vibroimpact.studies.sensitivity import sobol_indices
+from vibroimpact.studies.planning.axes import Spaced
+from vibroimpact.studies.planning.design import Asked
+from vibroimpact.studies.report.sensitivity import sobol_indices
 
 AGAINST = Against(
     "functions with known Sobol indices",

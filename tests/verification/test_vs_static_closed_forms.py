@@ -11,17 +11,21 @@ import pytest
 
 from agreement import Against, Agrees
 from vibroimpact.materials import Material
-from vibroimpact.structures.lattice import box_mesh
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.lattice import box_mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.plate_mesh import plate_mesh
+from vibroimpact.structures.finite_elements.rectangle import Disc
+from vibroimpact.structures.finite_elements.sphere_mesh import sphere_mesh
+from vibroimpact.structures.finite_elements.structure import (
+    Structure,
+    plate_structure,
+    solid_structure,
+)
+from vibroimpact.structures.finite_elements.surface import surface_motion
 from vibroimpact.structures.modes import ElasticSystem
-from vibroimpact.structures.plate_mesh import plate_mesh
-from vibroimpact.structures.rectangle import Disc
-from vibroimpact.structures.sphere_mesh import sphere_mesh
-from vibroimpact.structures.structure import Structure, plate_structure, solid_structure
 from vibroimpact.structures.supports.constraints import Constraints, HeldStructure
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.support import Support, held_by
-from vibroimpact.structures.surface import surface_motion
 
 AGAINST = Against(
     "statics of beams and plates, patch tests",

@@ -8,12 +8,12 @@ import pytest
 from agreement import Against, Agrees
 from oracles.axisymmetric_contact import static_approach
 from vibroimpact.materials import Material
+from vibroimpact.structures.finite_elements.sphere_mesh import sphere_mesh
+from vibroimpact.structures.finite_elements.structure import solid_structure
+from vibroimpact.structures.finite_elements.surface import surface_motion
 from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.sphere_compliance import finite_sphere_factor, sphere_term
-from vibroimpact.structures.sphere_mesh import sphere_mesh
-from vibroimpact.structures.structure import solid_structure
 from vibroimpact.structures.supports.support import held_by
-from vibroimpact.structures.surface import surface_motion
 
 AGAINST = Against(
     "finite-element analysis of a sphere in static contact",

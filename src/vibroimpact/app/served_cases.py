@@ -8,7 +8,7 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.costs import costs_of, impacts_expected, seconds_at_most, seconds_expected
 from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
 from vibroimpact.cases.fields.item_labels import path_in_words
-from vibroimpact.cases.rigid_problem import elastic_names
+from vibroimpact.cases.rigid.rigid_problem import elastic_names
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ from vibroimpact.bayes_error.falls import Falls, falls_of_study, falls_of_sweep
 from vibroimpact.bayes_error.observations import OBSERVATIONS, Channel, Observation, measurable
 from vibroimpact.errors import InputError
 from vibroimpact.report.reported import Reported
-from vibroimpact.studies.study import Study
-from vibroimpact.studies.sweep import Sweep
+from vibroimpact.studies.computation.study import Study
+from vibroimpact.studies.planning.sweep import Sweep
 
 BANDWIDTHS = np.array([1e3, 2e3, 4e3, 8e3, 16e3, 32e3])
 """Bandwidths over which the error from one impact is mapped [Hz]."""

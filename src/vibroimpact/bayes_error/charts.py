@@ -49,9 +49,11 @@ def bound_charts(bound: Bound) -> list[Chart]:
 
 def _errors(bound: Bound) -> Chart:
     names = tuple(reversed(bound.errors))
-    found = [bound.errors[name] for name in names]
-    upper = 100.0 * np.array([one.upper for one in found])
-    low, high = 100.0 * np.array([(one.lower, one.upper + one.standard_error) for one in found]).T
+    errors = [bound.errors[name] for name in names]
+    upper = 100.0 * np.array([error.upper for error in errors])
+    low, high = (
+        100.0 * np.array([(error.lower, error.upper + error.standard_error) for error in errors]).T
+    )
     bars = Bars(
         np.arange(float(len(names))),
         upper,
@@ -76,8 +78,10 @@ def _impacts(bound: Bound) -> Chart:
     some = np.arange(0, len(falls), max(1, len(falls) // _MOST_POINTS))
     marks = []
     for number, name in enumerate(np.unique(falls.classes).tolist()):
-        there = some[falls.classes[some] == name]
-        marks.append(Points(falls.impulse[there], falls.duration[there], name, series(number)))
+        of_class = some[falls.classes[some] == name]
+        marks.append(
+            Points(falls.impulse[of_class], falls.duration[of_class], name, series(number))
+        )
     panel = Panel(
         Axis("Impulse", "N s", log=True), Axis("Contact time", "s", log=True), tuple(marks)
     )
@@ -90,8 +94,8 @@ def _impacts(bound: Bound) -> Chart:
 
 def _sensors(bound: Bound) -> Chart:
     scale = Axis("Bayes error from one impact", "%")
-    rows = tuple(f"{one / 1e3:g} kHz" for one in BANDWIDTHS)
-    columns = tuple(f"{one:g} dB" for one in SIGNAL_TO_NOISE)
+    rows = tuple(f"{bandwidth / 1e3:g} kHz" for bandwidth in BANDWIDTHS)
+    columns = tuple(f"{ratio:g} dB" for ratio in SIGNAL_TO_NOISE)
     values = Map(
         np.arange(float(len(columns))), np.arange(float(len(rows))), 100.0 * bound.map, scale
     )

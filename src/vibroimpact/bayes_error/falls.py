@@ -14,12 +14,12 @@ from vibroimpact.bodies.ball import ball_volume, mean_density
 from vibroimpact.cases.case import Case
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
 from vibroimpact.errors import InputError
-from vibroimpact.studies.axes import Values
-from vibroimpact.studies.compute_points import compute_points
-from vibroimpact.studies.population import CLASS
-from vibroimpact.studies.study import Study
-from vibroimpact.studies.sweep import Sweep
-from vibroimpact.studies.swept_keys import case_at
+from vibroimpact.studies.computation.compute_points import compute_points
+from vibroimpact.studies.computation.study import Study
+from vibroimpact.studies.planning.axes import Values
+from vibroimpact.studies.planning.population import CLASS
+from vibroimpact.studies.planning.sweep import Sweep
+from vibroimpact.studies.planning.swept_keys import case_at
 
 _COLUMNS = ("first_approach_speed_m_s", "first_restitution_achieved", "first_duration_s")
 _KEYS_OF_RIGID_PLATE = ("size", "material", "inclination")

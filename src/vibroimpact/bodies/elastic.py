@@ -15,6 +15,8 @@ import numpy as np
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures.damping import ConstantRatio, Damping
+from vibroimpact.structures.finite_elements.sphere_mesh import MOST_ACROSS
+from vibroimpact.structures.finite_elements.surface import Side, Spot, place_of
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel, modal_basis, rigid_basis
 from vibroimpact.structures.mode_count import OF_AN_EDGE
 from vibroimpact.structures.plate_waves import wave_numbers
@@ -27,11 +29,9 @@ from vibroimpact.structures.recipe import (
     SphereOfSolids,
 )
 from vibroimpact.structures.sound_paths import Listener
-from vibroimpact.structures.sphere_mesh import MOST_ACROSS
 from vibroimpact.structures.support_force import SupportForces, support_forces
 from vibroimpact.structures.supports.edge import Edge
 from vibroimpact.structures.supports.support import Support
-from vibroimpact.structures.surface import Side, Spot, place_of
 
 _PER_WAVE = 3.0  # second-order bricks per shortest shear wavelength
 _ACROSS = 8  # least number of elements from pole to pole, for errors of 0.03 % of the lowest modes

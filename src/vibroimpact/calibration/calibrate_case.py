@@ -9,18 +9,23 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from vibroimpact.calibration.calibrate import calibrate
-from vibroimpact.calibration.calibrated_drops import impact_count
-from vibroimpact.calibration.calibration import DAMPINGS, Calibration
+from vibroimpact.calibration.contact_law.calibrate import calibrate
+from vibroimpact.calibration.contact_law.calibration import DAMPINGS, Calibration
+from vibroimpact.calibration.fit.calibrated_drops import impact_count
+from vibroimpact.calibration.fit.matching import Tunable
+from vibroimpact.calibration.fit.tunables import law_parameter, modal_damping
+from vibroimpact.calibration.fit.typed_inputs import Moved, moved_inputs, typed_inputs
 from vibroimpact.calibration.friction.calibrate import FrictionCalibration, calibrate_friction
 from vibroimpact.calibration.friction.measured import oblique_impacts_in_file
 from vibroimpact.calibration.friction.parameters import friction_parameters
-from vibroimpact.calibration.matching import Tunable
-from vibroimpact.calibration.observations import Observations
-from vibroimpact.calibration.section import FRICTION, CalibrateSection, FileTarget, friction_names
+from vibroimpact.calibration.observed.observations import Observations
+from vibroimpact.calibration.observed.section import (
+    FRICTION,
+    CalibrateSection,
+    FileTarget,
+    friction_names,
+)
 from vibroimpact.calibration.targets import target_of
-from vibroimpact.calibration.tunables import law_parameter, modal_damping
-from vibroimpact.calibration.typed_inputs import Moved, moved_inputs, typed_inputs
 from vibroimpact.cases.build import problem_of
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.contact import read_contact

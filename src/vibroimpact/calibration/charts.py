@@ -8,8 +8,8 @@ from functools import partial
 
 import numpy as np
 
-from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.differences import COMPARED, WAYS, differences
+from vibroimpact.calibration.contact_law.calibration import Calibration
+from vibroimpact.calibration.contact_law.differences import COMPARED, WAYS, differences
 from vibroimpact.calibration.friction.calibrate import FrictionCalibration
 from vibroimpact.calibration.friction.charts import friction_charts
 from vibroimpact.calibration.record_chart import record_chart
@@ -24,12 +24,12 @@ _FEW = 12
 """Impacts up to which each has its number on the axis."""
 
 
-def calibration_charts(found: Calibration | FrictionCalibration) -> list[Chart]:
+def calibration_charts(calibration: Calibration | FrictionCalibration) -> list[Chart]:
     """Return the charts of a calibration.
 
     Parameters
     ----------
-    found : Calibration or FrictionCalibration
+    calibration : Calibration or FrictionCalibration
         Result of the calibration.
 
     Returns
@@ -45,36 +45,39 @@ def calibration_charts(found: Calibration | FrictionCalibration) -> list[Chart]:
     >>> [chart.name for chart in calibration_charts(found)]
     ['parameter', 'differences']
     """
-    if isinstance(found, FrictionCalibration):
-        return friction_charts(found)
-    makers = {"parameter": partial(_parameter_chart, found)}
-    if found.overlays:
-        makers["record"] = partial(record_chart, found.overlays)
-    if differences(found) and len(found.drops["variable"]["impact"]) > 1:
-        makers["differences"] = partial(_differences_chart, found)
+    if isinstance(calibration, FrictionCalibration):
+        return friction_charts(calibration)
+    makers = {"parameter": partial(_parameter_chart, calibration)}
+    if calibration.overlays:
+        makers["record"] = partial(record_chart, calibration.overlays)
+    if differences(calibration) and len(calibration.drops["variable"]["impact"]) > 1:
+        makers["differences"] = partial(_differences_chart, calibration)
     return made_charts(makers)
 
 
-def parameter_words(found: Calibration) -> str:
+def parameter_words(calibration: Calibration) -> str:
     """Return in words what was found, such as "largest damping C"."""
-    law = found.problem.laws[0]
-    if found.parameter in law.__dataclass_fields__:
-        return str(law.__dataclass_fields__[found.parameter].metadata["meaning"])
-    return f"damping ratio of the {found.parameter.partition('.')[0]}"
+    law = calibration.problem.laws[0]
+    if calibration.parameter in law.__dataclass_fields__:
+        return str(law.__dataclass_fields__[calibration.parameter].metadata["meaning"])
+    return f"damping ratio of the {calibration.parameter.partition('.')[0]}"
 
 
-def _parameter_chart(found: Calibration) -> Chart:
-    function, speeds, words = found.fit.function, found.observations.speeds, parameter_words(found)
+def _parameter_chart(calibration: Calibration) -> Chart:
+    function = calibration.fit.function
+    speeds = calibration.observations.speeds
+    phrase = parameter_words(calibration)
     marks: list[Mark] = []
     fitted_too = ""
     if function.degree or len(speeds) > 1:
         smooth = np.linspace(function.slowest, function.fastest, _SMOOTH)
-        fitted, band = function(smooth), found.fit.band(smooth, found.confidence)
+        fitted = function(smooth)
+        band = calibration.fit.band(smooth, calibration.confidence)
         if np.isfinite(band).all():
-            of_what = "band" if found.observations.measured else "band of the misfit"
-            low, high = found.allowed.bounded(np.array([fitted - band, fitted + band]))
+            of_what = "band" if calibration.observations.measured else "band of the misfit"
+            low, high = calibration.allowed.bounded(np.array([fitted - band, fitted + band]))
             marks.append(
-                Band(smooth, low, high, f"{100.0 * found.confidence:g} % {of_what}", "band")
+                Band(smooth, low, high, f"{100.0 * calibration.confidence:g} % {of_what}", "band")
             )
         name = (
             ("constant", "line")[function.degree]
@@ -85,36 +88,48 @@ def _parameter_chart(found: Calibration) -> Chart:
         of_impacts = np.allclose([function.slowest, function.fastest], [speeds.min(), speeds.max()])
         fitted_to = "them" if of_impacts else "the exact values at calibrate.speeds"
         fitted_too = f", and the {name} fitted to {fitted_to}"
-    if found.curve is not None:
-        marks.append(Line(*found.curve, "exact at each speed"))
-    low, high = (None, None) if found.intervals is None else found.intervals.T
+    if calibration.curve is not None:
+        marks.append(Line(*calibration.curve, "exact at each speed"))
+    low, high = (None, None) if calibration.intervals is None else calibration.intervals.T
     marks.append(
         Points(
             speeds,
-            found.values,
+            calibration.values,
             "impacts matched",
             "matched",
-            found.observations.labels,
+            calibration.observations.labels,
             low=low,
             high=high,
         )
     )
-    if found.as_given and not np.allclose(found.given, found.values, rtol=1e-3):
+    if calibration.as_given and not np.allclose(calibration.given, calibration.values, rtol=1e-3):
         marks.append(
-            Points(speeds, found.given, "as the case gives it", "muted", found.observations.labels)
+            Points(
+                speeds,
+                calibration.given,
+                "as the case gives it",
+                "muted",
+                calibration.observations.labels,
+            )
         )
-    panel = Panel(Axis("Approach speed", "m/s"), Axis(_begun(words), found.unit), tuple(marks))
-    key = found.parameter if "." in found.parameter else f"contact.{found.parameter}"
+    panel = Panel(
+        Axis("Approach speed", "m/s"), Axis(_begun(phrase), calibration.unit), tuple(marks)
+    )
+    key = (
+        calibration.parameter
+        if "." in calibration.parameter
+        else f"contact.{calibration.parameter}"
+    )
     caption = f"In a case it is {key}. Each impact by itself{fitted_too}."
-    if found.intervals is not None:
-        caption += f" Bars: the interval of each impact at {100.0 * found.confidence:g} %."
+    if calibration.intervals is not None:
+        caption += f" Bars: the interval of each impact at {100.0 * calibration.confidence:g} %."
     return Chart(
-        "parameter", f"{_begun(words)} over the approach speed", ((panel,),), caption, height=3.4
+        "parameter", f"{_begun(phrase)} over the approach speed", ((panel,),), caption, height=3.4
     )
 
 
-def _differences_chart(found: Calibration) -> Chart:
-    off = differences(found)
+def _differences_chart(calibration: Calibration) -> Chart:
+    off = differences(calibration)
     shown = [
         name
         for name in COMPARED
@@ -149,5 +164,5 @@ def _differences_chart(found: Calibration) -> Chart:
     return Chart("differences", "Remaining differences", rows, caption, height=2.3)
 
 
-def _begun(words: str) -> str:
-    return words[:1].upper() + words[1:]
+def _begun(phrase: str) -> str:
+    return phrase[:1].upper() + phrase[1:]

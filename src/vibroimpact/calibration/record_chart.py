@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.overlay import Overlay
+from vibroimpact.calibration.fit.overlay import Overlay
 from vibroimpact.charts.axis import Axis, View
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.decimation import visible_points
@@ -47,18 +47,22 @@ def record_chart(overlays: Sequence[Overlay]) -> Chart:
 
 def _force_chart(overlays: Sequence[Overlay]) -> Chart:
     time = Axis(
-        "Time", "s", views=tuple(_contact_view(number, one) for number, one in enumerate(overlays))
+        "Time",
+        "s",
+        views=tuple(_contact_view(number, overlay) for number, overlay in enumerate(overlays)),
     )
     upper: list[Mark] = []
     lower: list[Mark] = []
-    for one in overlays:
-        (measured_at, force), (at, simulated) = one.measured, one.simulated
+    for overlay in overlays:
+        (measured_at, force), (at, simulated) = overlay.measured, overlay.simulated
         apart = force - np.interp(measured_at, at, simulated, left=0.0, right=0.0)
         upper += [
-            _measured(one.touch + measured_at, force),
-            Line(one.touch + at, simulated, "simulated", "detail"),
+            _measured(overlay.touch + measured_at, force),
+            Line(overlay.touch + at, simulated, "simulated", "detail"),
         ]
-        lower.append(Line(one.touch + measured_at, apart, "measured less simulated", "matched"))
+        lower.append(
+            Line(overlay.touch + measured_at, apart, "measured less simulated", "difference")
+        )
     panels = (
         (Panel(time, Axis("Contact force", "N"), tuple(upper)),),
         (Panel(time, Axis("Difference", "N"), tuple(lower)),),
@@ -70,36 +74,43 @@ def _force_chart(overlays: Sequence[Overlay]) -> Chart:
     return Chart("record", "Measured and simulated contact force", panels, caption, height=2.3)
 
 
-def _contact_view(number: int, one: Overlay) -> View:
-    duration = float(one.simulated[0][-1])
+def _contact_view(number: int, overlay: Overlay) -> View:
+    duration = float(overlay.simulated[0][-1])
     measured, simulated = (
-        text(float(np.max(part[1])), "N", 3) for part in (one.measured, one.simulated)
+        text(float(np.max(part[1])), "N", 3) for part in (overlay.measured, overlay.simulated)
     )
     headline = f"largest force: simulated {simulated}, measured {measured}"
-    start, end = one.touch - _MARGIN * duration, one.touch + (1.0 + _MARGIN) * duration
+    start = overlay.touch - _MARGIN * duration
+    end = overlay.touch + (1.0 + _MARGIN) * duration
     return View(
         f"Impact {number + 1}",
         start,
         end,
-        one.touch,
+        overlay.touch,
         f"Time since first touch of impact {number + 1}",
         headline,
     )
 
 
-def _position_chart(one: Overlay) -> Chart:
+def _position_chart(overlay: Overlay) -> Chart:
     views = tuple(
-        _flight_view(number, flight) for number, flight in enumerate(one.flights[:_MOST_VIEWS])
+        _flight_view(number, flight) for number, flight in enumerate(overlay.flights[:_MOST_VIEWS])
     )
-    known = np.isfinite(one.simulated[1])
-    apart = one.measured[1] - one.simulated[1]
+    known = np.isfinite(overlay.simulated[1])
+    apart = overlay.measured[1] - overlay.simulated[1]
     time = Axis("Time", "s", views=views)
     upper = (
-        _measured(*_drawn(*one.measured)),
-        Line(*_drawn(one.measured[0][known], one.simulated[1][known]), "simulated", "detail"),
+        _measured(*_drawn(*overlay.measured)),
+        Line(
+            *_drawn(overlay.measured[0][known], overlay.simulated[1][known]), "simulated", "detail"
+        ),
     )
     lower = (
-        Line(*_drawn(one.measured[0][known], apart[known]), "measured less simulated", "matched"),
+        Line(
+            *_drawn(overlay.measured[0][known], apart[known]),
+            "measured less simulated",
+            "difference",
+        ),
     )
     panels = (
         (Panel(time, Axis("Height", "m"), upper),),
@@ -129,8 +140,8 @@ def _flight_view(number: int, flight: tuple[float, float]) -> View:
 
 def _measured(time: Floats, values: Floats) -> Mark:
     if len(time) <= _FEW:
-        return Points(time, values, "measured", "sample")
-    return Line(time, values, "measured", "under")
+        return Points(time, values, "measured", "measured samples")
+    return Line(time, values, "measured", "measured record")
 
 
 def _drawn(time: Floats, values: Floats) -> tuple[Floats, Floats]:

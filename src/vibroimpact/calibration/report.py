@@ -10,14 +10,27 @@ from typing import Any
 import tomli_w
 
 from vibroimpact._version import __version__
-from vibroimpact.calibration.adams_dialog import calibrated_dialog, dialog_note, dialog_table
-from vibroimpact.calibration.calibration import Calibration, case_name
 from vibroimpact.calibration.charts import calibration_charts
-from vibroimpact.calibration.file_contents import (
+from vibroimpact.calibration.contact_law.adams_dialog import (
+    calibrated_dialog,
+    dialog_note,
+    dialog_table,
+)
+from vibroimpact.calibration.contact_law.calibration import Calibration, case_name
+from vibroimpact.calibration.contact_law.file_contents import (
     CALIBRATION,
     calibration_table,
     columns_of,
     comparison_rows,
+)
+from vibroimpact.calibration.contact_law.law_report import (
+    differences_tables,
+    fit_sentences,
+    function_words,
+    given_sentences,
+    match_words,
+    values_table,
+    ways_words,
 )
 from vibroimpact.calibration.friction.calibrate import FrictionCalibration
 from vibroimpact.calibration.friction.friction_report import (
@@ -27,15 +40,6 @@ from vibroimpact.calibration.friction.friction_report import (
     friction_words,
     given_values_sentences,
     together_words,
-)
-from vibroimpact.calibration.law_report import (
-    differences_tables,
-    fit_sentences,
-    function_words,
-    given_sentences,
-    match_words,
-    values_table,
-    ways_words,
 )
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.files.check_sums import CHECK_SUMS, digests_of, sealed

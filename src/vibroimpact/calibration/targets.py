@@ -6,25 +6,25 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.calibration.evaluate_measurement import Measurement, evaluate
-from vibroimpact.calibration.matchable import REBOUND, REBOUNDS
-from vibroimpact.calibration.measured_case import (
-    first_impact_measurement,
-    heights_measurement,
-    restitution_observations,
-)
-from vibroimpact.calibration.measured_file import file_measurement
-from vibroimpact.calibration.observations import Observations, from_table
-from vibroimpact.calibration.section import (
+from vibroimpact.calibration.observed.matchable import REBOUND, REBOUNDS
+from vibroimpact.calibration.observed.observations import Observations, from_table
+from vibroimpact.calibration.observed.section import (
     CalibrateSection,
     FileTarget,
     HeightsTarget,
     ImpactTarget,
     RestitutionTarget,
 )
+from vibroimpact.calibration.records.evaluate_measurement import Measurement, evaluate
+from vibroimpact.calibration.records.measured_case import (
+    first_impact_measurement,
+    heights_measurement,
+    restitution_observations,
+)
+from vibroimpact.calibration.records.measured_file import file_measurement
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.contact import ContactSection
-from vibroimpact.cases.rigid_problem import by_speed_of, contact_laws_of, touch_speed
+from vibroimpact.cases.rigid.rigid_problem import by_speed_of, contact_laws_of, touch_speed
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError

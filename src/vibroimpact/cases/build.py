@@ -9,15 +9,15 @@ from collections.abc import Callable
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any, Literal, cast
 
-from vibroimpact.calibration.section import calibrate_table
+from vibroimpact.calibration.observed.section import calibrate_table
 from vibroimpact.cases.elastic.positions import check_positions
 from vibroimpact.cases.fields.elastic_body import ELASTIC_KEYS, BroughtMeshTable
 from vibroimpact.cases.fields.item_labels import item_label
 from vibroimpact.cases.fields.material import material_table
-from vibroimpact.cases.oblique import friction_law_of, oblique_keys
-from vibroimpact.cases.pair import is_free_sphere, sphere_density
-from vibroimpact.cases.plate_motion import motion_length
-from vibroimpact.cases.rigid_problem import (
+from vibroimpact.cases.rigid.oblique import friction_law_of, oblique_keys
+from vibroimpact.cases.rigid.pair import is_free_sphere, sphere_density
+from vibroimpact.cases.rigid.plate_motion import motion_length
+from vibroimpact.cases.rigid.rigid_problem import (
     PLATE_FALLS,
     by_speed_of,
     contact_laws_of,
@@ -39,7 +39,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.resolved_case import ResolvedCase
 
 if TYPE_CHECKING:
-    from vibroimpact.cases.schema import CaseTable, PlateSection, SphereSection
+    from vibroimpact.cases.sections.schema import CaseTable, PlateSection, SphereSection
 
 
 _BALL_FALLS = (

@@ -13,8 +13,8 @@ from typing import Any
 
 import tomli_w
 
-from vibroimpact.cases.keys import with_values
 from vibroimpact.cases.reader import parse_case
+from vibroimpact.cases.sections.keys import with_values
 
 _HEADER = re.compile(r"^\s*\[")
 _BARE = re.compile(r"[\w-]+", re.ASCII)

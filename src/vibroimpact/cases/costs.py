@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 from vibroimpact.cases.fields.section import derived
-from vibroimpact.cases.pair import contact_pair
-from vibroimpact.cases.rigid_problem import (
+from vibroimpact.cases.rigid.pair import contact_pair
+from vibroimpact.cases.rigid.rigid_problem import (
     contact_laws_of,
     deforms,
     elastic_names,
@@ -21,7 +21,7 @@ from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.history_grid import MOST_POINTS
 from vibroimpact.dynamics.problem import MOST_IMPACTS
 from vibroimpact.dynamics.restitution import achieved_restitution
-from vibroimpact.structures.free_memory import check_memory
+from vibroimpact.structures.finite_elements.free_memory import check_memory
 
 if TYPE_CHECKING:
     from vibroimpact.cases.case import Case

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Container
 
-from vibroimpact.cases.conditions import Conditions, DropSummary
-from vibroimpact.cases.limit import limits, numbers_of
+from vibroimpact.cases.limits.conditions import Conditions, DropSummary
+from vibroimpact.cases.limits.limit import limits, numbers_of
 from vibroimpact.cases.wrong_units.detect import slips
 from vibroimpact.resolved_case import ResolvedCase
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from vibroimpact.cases.conditions import DropSummary
-from vibroimpact.cases.pair import contact_pair
-from vibroimpact.cases.rigid_problem import contact_laws_of, in_liquid, touch_speed
+from vibroimpact.cases.limits.conditions import DropSummary
+from vibroimpact.cases.rigid.pair import contact_pair
+from vibroimpact.cases.rigid.rigid_problem import contact_laws_of, in_liquid, touch_speed
 from vibroimpact.compiled import interpreted
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.power_law import HERTZ_TIME

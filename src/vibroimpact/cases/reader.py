@@ -18,7 +18,7 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.fault_messages import fault_messages
 from vibroimpact.cases.fields.item_labels import path_in_words
 from vibroimpact.cases.fields.size_limits import MOST_BYTES, check_bounds, check_text
-from vibroimpact.cases.keys import with_values
+from vibroimpact.cases.sections.keys import with_values
 from vibroimpact.errors import InputError, choices
 from vibroimpact.files.reading import FileKind, read_text
 from vibroimpact.quoting import quoted, shortened

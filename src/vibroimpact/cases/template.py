@@ -19,7 +19,7 @@ from vibroimpact.cases.fields.quantities import quantity_of
 from vibroimpact.cases.fields.section import Section
 from vibroimpact.cases.fields.sensor import SensorSection
 from vibroimpact.cases.reader import case_text, load_case, prefix_errors
-from vibroimpact.cases.schema import SECTIONS
+from vibroimpact.cases.sections.schema import SECTIONS
 from vibroimpact.contact.law import default_origin, unit_of
 from vibroimpact.contact.registry import find_contact_law
 

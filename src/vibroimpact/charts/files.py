@@ -111,7 +111,8 @@ def render_png(figure: Figure) -> bytes:
         canvas = FigureCanvasAgg(figure)
         canvas.draw()  # type: ignore[no-untyped-call]
         pixels = np.asarray(canvas.buffer_rgba())  # type: ignore[no-untyped-call]
-        page, file = Image.fromarray(pixels).convert("RGB"), BytesIO()
+        page = Image.fromarray(pixels).convert("RGB")
+        file = BytesIO()
         page.save(file, "png", dpi=(_DPI, _DPI), compress_level=6)
     return file.getvalue()
 

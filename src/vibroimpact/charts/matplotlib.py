@@ -238,8 +238,8 @@ class _Print:
         has_words_below = len(self.chart.rows) == 1 or any(
             isinstance(mark, Label) and mark.corner for panel in row for mark in panel.marks
         )
-        words = _PICTURE_TITLE + (_PICTURE_WORDS if has_words_below else 0.0)
-        return min(max(*heights, _LEAST_PICTURE) + words, largest)
+        phrase = _PICTURE_TITLE + (_PICTURE_WORDS if has_words_below else 0.0)
+        return min(max(*heights, _LEAST_PICTURE) + phrase, largest)
 
     def _pictures(self) -> bool:
         """Return whether all panels are pictures."""
@@ -249,7 +249,8 @@ class _Print:
         """Draw views of the first panel in a row; the first one has the label of the
         vertical axis.
         """
-        panel, grid = self.chart.panels[0], part.add_gridspec(1, len(views))
+        panel = self.chart.panels[0]
+        grid = part.add_gridspec(1, len(views))
         _, named = view_frames(panel, views[0], self.frames[panel.y], self.chart.panels)
         for number, view in enumerate(views):
             self._view(
@@ -264,7 +265,8 @@ class _Print:
 
     def _titles(self, figure: Figure) -> None:
         """Write the title and the lines below it, once the height of the figure is known."""
-        chart, total = self.chart, figure.get_figheight()
+        chart = self.chart
+        total = figure.get_figheight()
         figure.suptitle(
             lettering(chart.title, 110), x=0.01, ha="left", fontsize=10.5, fontweight="bold"
         )
@@ -319,8 +321,10 @@ class _Print:
         since = across.label.removeprefix("Time ").partition(" of ")[0]
         short = Frame(since[:1].upper() + since[1:], across.unit, across.size, across.origin)
         self._panel(axes, panel, short, up, view, lowest=lowest, labelled=beside is None)
-        told = beside is None or up.unit == beside.unit or view.headline.split()[-1:] == [up.unit]
-        unit = "" if told else f"[{up.unit}]"
+        has_unit = (
+            beside is None or up.unit == beside.unit or view.headline.split()[-1:] == [up.unit]
+        )
+        unit = "" if has_unit else f"[{up.unit}]"
         # the upper row names the view and what it is about
         upper = panel in self.chart.rows[0] or not view.headline
         title = _title(view, unit, int((WIDTH / columns - _NUMBERS) / _LETTER)) if upper else unit
@@ -350,10 +354,12 @@ class _Print:
                 and not span[0] <= mark.value <= span[1]
             ):
                 continue
-            frames, inside = (across, up), (-np.inf, np.inf)
+            frames = (across, up)
+            inside = (-np.inf, np.inf)
             if view is not None:
                 own = own_view(mark, panel, view)
-                frames, inside = (replace(across, origin=own.origin), up), (own.start, own.end)
+                frames = (replace(across, origin=own.origin), up)
+                inside = (own.start, own.end)
             before = set(axes.get_children())
             self.marks.draw(axes, mark, panel, frames, inside)
             # in a picture what is drawn later covers what was drawn before, lines too

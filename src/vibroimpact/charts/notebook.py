@@ -69,49 +69,54 @@ def plotly_figure(chart: Chart) -> go.Figure:
     }
     layout["legend"] = {"orientation": "h", "y": -60 / layout["height"], "yanchor": "top"}
     layout["height"] += above + 80
-    traces = [trace for one in drawn["data"] for trace in _traces(one, drawn["frames"])]
+    traces = [
+        trace for drawn_trace in drawn["data"] for trace in _traces(drawn_trace, drawn["frames"])
+    ]
     return go.Figure(_coloured({"data": traces, "layout": layout}))
 
 
-def _traces(one: dict[str, Any], frames: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
+def _traces(trace: dict[str, Any], frames: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
     """Return the traces of plotly that a trace of a chart becomes."""
-    x, y = frames[one["xaxis"]], frames[one["yaxis"]]
+    x = frames[trace["xaxis"]]
+    y = frames[trace["yaxis"]]
     common: dict[str, Any] = {
-        key: one[key]
+        key: trace[key]
         for key in ("xaxis", "yaxis", "name", "showlegend", "legendgroup")
-        if key in one
+        if key in trace
     }
-    match one["type"]:
+    match trace["type"]:
         case "rug":
             return []
         case "band":
-            edges = [_shown(one[side], y) for side in ("low", "high")]
-            look = {key: one[key] for key in ("fillcolor", "fillopacity", "line")} | {
+            edges = [_shown(trace[side], y) for side in ("low", "high")]
+            look = {key: trace[key] for key in ("fillcolor", "fillopacity", "line")} | {
                 "type": "scatter",
                 "mode": "lines",
-                "x": _shown(one["x"], x),
+                "x": _shown(trace["x"], x),
             }
             return [
                 {**look, **common, "y": edges[0], "showlegend": False, "hoverinfo": "skip"},
                 {**look, **common, "y": edges[1], "fill": "tonexty", "hoverinfo": "skip"},
             ]
         case "stack":
-            return _stack(one, x, y, common)
+            return _stack(trace, x, y, common)
         case "bars":
-            return [_bars(one, x, y, common)]
+            return [_bars(trace, x, y, common)]
         case "heatmap" | "contour":
-            texts = {"text": np.reshape(one["text"], one["z"].shape)} if "text" in one else {}
-            return [{**one, **texts, "x": _shown(one["x"], x), "y": _shown(one["y"], y)}]
+            texts = {"text": np.reshape(trace["text"], trace["z"].shape)} if "text" in trace else {}
+            return [{**trace, **texts, "x": _shown(trace["x"], x), "y": _shown(trace["y"], y)}]
     kept = {
         key: value
-        for key, value in one.items()
+        for key, value in trace.items()
         if key not in ("x", "y", "low", "high", "keys", "origins")
     }
-    across, up = one["x"], one["y"]
-    if one["mode"] == "lines" and "fill" not in one:
+    across = trace["x"]
+    up = trace["y"]
+    if trace["mode"] == "lines" and "fill" not in trace:
         across, up = decimated(across, up, _FINE)
-    if "low" in one:
-        above, below = (one["high"] - one["y"]) / y["size"], (one["y"] - one["low"]) / y["size"]
+    if "low" in trace:
+        above = (trace["high"] - trace["y"]) / y["size"]
+        below = (trace["y"] - trace["low"]) / y["size"]
         kept["error_y"] = {
             "array": above,
             "arrayminus": below,
@@ -119,8 +124,8 @@ def _traces(one: dict[str, Any], frames: dict[str, dict[str, Any]]) -> list[dict
             "width": 3,
             "color": "@main",
         }
-    if one.get("hoverinfo") != "skip" and "hovertemplate" not in one:
-        kept["hovertemplate"] = hover(x["unit"], y["unit"], "text" in one) + _name_of(one)
+    if trace.get("hoverinfo") != "skip" and "hovertemplate" not in trace:
+        kept["hovertemplate"] = hover(x["unit"], y["unit"], "text" in trace) + _name_of(trace)
     return [{**kept, "x": _shown(across, x), "y": _shown(up, y)}]
 
 
@@ -135,20 +140,20 @@ def hover(across: str, up: str, texts: bool) -> str:
     return f"{'%{text}<br>' if texts else ''}%{{x:.7~g}} {across}<br>%{{y:.5~g}} {up}"
 
 
-def _name_of(one: dict[str, Any]) -> str:
+def _name_of(trace: dict[str, Any]) -> str:
     """Return what takes the name of a trace away at the pointer where it has none: plotly
     would call it by its number.
     """
-    return "" if one.get("name") else "<extra></extra>"
+    return "" if trace.get("name") else "<extra></extra>"
 
 
 def _stack(
-    one: dict[str, Any], x: dict[str, Any], y: dict[str, Any], common: dict[str, Any]
+    trace: dict[str, Any], x: dict[str, Any], y: dict[str, Any], common: dict[str, Any]
 ) -> list[dict[str, Any]]:
-    kept = one.get("overview", slice(None, None, max(1, len(one["x"]) // COLUMNS)))
-    layers = tuple(Layer(layer["name"], layer["y"][kept], "") for layer in one["layers"])
-    edges = stack_edges(Stack(one["x"][kept], layers))
-    line = {"type": "scatter", "mode": "lines", "x": _shown(one["x"][kept], x), **common}
+    kept = trace.get("overview", slice(None, None, max(1, len(trace["x"]) // COLUMNS)))
+    layers = tuple(Layer(layer["name"], layer["y"][kept], "") for layer in trace["layers"])
+    edges = stack_edges(Stack(trace["x"][kept], layers))
+    line = {"type": "scatter", "mode": "lines", "x": _shown(trace["x"][kept], x), **common}
     traces = [
         {
             **line,
@@ -158,18 +163,18 @@ def _stack(
             "showlegend": False,
         }
     ]
-    for layer, values, edge in zip(one["layers"], layers, edges[1:], strict=True):
+    for layer, values, edge in zip(trace["layers"], layers, edges[1:], strict=True):
         look = {key: layer[key] for key in ("fillcolor", "fillpattern") if key in layer} | {
             "line": {"width": 0.4, "color": "@main"}
         }
-        words = (
+        phrase = (
             f"{layer['name']}: %{{customdata:.5~g}} {y['unit']}<br>%{{x:.7~g}} "
             f"{x['unit']}<extra></extra>"
         )
         own = {
             "name": layer["name"],
             "customdata": _shown(values.values, y),
-            "hovertemplate": words,
+            "hovertemplate": phrase,
             "fill": "tonexty",
             "showlegend": True,
         }
@@ -178,47 +183,49 @@ def _stack(
 
 
 def _bars(
-    one: dict[str, Any], x: dict[str, Any], y: dict[str, Any], common: dict[str, Any]
+    trace: dict[str, Any], x: dict[str, Any], y: dict[str, Any], common: dict[str, Any]
 ) -> dict[str, Any]:
-    along, across = (y, x) if one["lying"] else (x, y)
-    places, values = _shown(one["places"], along), one["values"] / across["size"]
+    along, across = (y, x) if trace["lying"] else (x, y)
+    places = _shown(trace["places"], along)
+    values = trace["values"] / across["size"]
     bars = {
         "type": "bar",
-        "orientation": "h" if one["lying"] else "v",
-        "marker": one["marker"],
-        "width": one["widths"] / along["size"],
+        "orientation": "h" if trace["lying"] else "v",
+        "marker": trace["marker"],
+        "width": trace["widths"] / along["size"],
     }
-    if "base" in one:
-        bars["base"] = _shown(one["base"], across)
-    if "low" in one:
+    if "base" in trace:
+        bars["base"] = _shown(trace["base"], across)
+    if "low" in trace:
         error = {
-            "array": (one["high"] - one["values"]) / across["size"],
-            "arrayminus": (one["values"] - one["low"]) / across["size"],
+            "array": (trace["high"] - trace["values"]) / across["size"],
+            "arrayminus": (trace["values"] - trace["low"]) / across["size"],
         }
-        bars["error_x" if one["lying"] else "error_y"] = {
+        bars["error_x" if trace["lying"] else "error_y"] = {
             **error,
             "thickness": 1.0,
             "width": 3,
             "color": "@main",
         }
-    if "text" in one:
-        bars["hovertext"] = one["text"]  # as "text" it would be written on the bars
-    place, value = ("y", "x") if one["lying"] else ("x", "y")
-    what = "%{hovertext}" if "text" in one else f"%{{{place}:.5~g}} {along['unit']}"
-    bars["hovertemplate"] = f"{what}<br>%{{{value}:.5~g}} {across['unit']}" + _name_of(one)
+    if "text" in trace:
+        bars["hovertext"] = trace["text"]  # as "text" it would be written on the bars
+    place, value = ("y", "x") if trace["lying"] else ("x", "y")
+    what = "%{hovertext}" if "text" in trace else f"%{{{place}:.5~g}} {along['unit']}"
+    bars["hovertemplate"] = f"{what}<br>%{{{value}:.5~g}} {across['unit']}" + _name_of(trace)
     return {
         **bars,
         **common,
-        "x": values if one["lying"] else places,
-        "y": places if one["lying"] else values,
+        "x": values if trace["lying"] else places,
+        "y": places if trace["lying"] else values,
     }
 
 
 def _levels(drawn: dict[str, Any]) -> list[dict[str, Any]]:
-    found = []
+    shapes = []
     for level in drawn["levels"]:
         frame = drawn["frames"][level["axis"]]
-        place, along = float(_shown(np.array(level["value"]), frame)), level["axis"][0]
+        place = float(_shown(np.array(level["value"]), frame))
+        along = level["axis"][0]
         ends = (
             {"xref": level["axis"], "x0": place, "x1": place}
             if along == "x"
@@ -230,7 +237,7 @@ def _levels(drawn: dict[str, Any]) -> list[dict[str, Any]]:
             if along == "x"
             else {"xref": across, "x0": 0, "x1": 1}
         )
-        found.append(
+        shapes.append(
             {
                 "type": "line",
                 "line": level["line"],
@@ -238,11 +245,11 @@ def _levels(drawn: dict[str, Any]) -> list[dict[str, Any]]:
                 **ends,
             }
         )
-    return found
+    return shapes
 
 
 def _spans(drawn: dict[str, Any]) -> list[dict[str, Any]]:
-    found = []
+    shapes = []
     for span in drawn["spans"]:
         frame = drawn["frames"][span["axis"]]
         # more would be too narrow to see, and slow
@@ -257,31 +264,31 @@ def _spans(drawn: dict[str, Any]) -> list[dict[str, Any]]:
                 "layer": "below",
             }
             across = {"yref": f"{span['across']} domain", "y0": 0, "y1": 1}
-            found.append(
+            shapes.append(
                 {"type": "rect", "xref": span["axis"], "x0": start, "x1": end, **across, **look}
             )
-    return found
+    return shapes
 
 
 def _rugs(drawn: dict[str, Any]) -> list[dict[str, Any]]:
     """Return the ticks of rugs, as one path each."""
-    found = []
-    for one in drawn["data"]:
-        if one["type"] == "rug" and len(one["x"]):
+    shapes = []
+    for trace in drawn["data"]:
+        if trace["type"] == "rug" and len(trace["x"]):
             path = "".join(
                 f"M{place},0L{place},0.03"
-                for place in _shown(one["x"], drawn["frames"][one["xaxis"]]).tolist()
+                for place in _shown(trace["x"], drawn["frames"][trace["xaxis"]]).tolist()
             )
-            across = {"xref": one["xaxis"], "yref": f"{one['yaxis']} domain"}
-            found.append(
+            across = {"xref": trace["xaxis"], "yref": f"{trace['yaxis']} domain"}
+            shapes.append(
                 {
                     "type": "path",
                     "path": path,
                     **across,
-                    "line": {"color": one["color"], "width": 1},
+                    "line": {"color": trace["color"], "width": 1},
                 }
             )
-    return found
+    return shapes
 
 
 def _shown(values: Floats, frame: dict[str, Any]) -> Floats:
@@ -293,16 +300,16 @@ def _coloured(part: Any) -> Any:
     and the opacity of areas in their colour.
     """
     if isinstance(part, dict):
-        found = {key: _coloured(value) for key, value in part.items() if key != "fillopacity"}
+        coloured = {key: _coloured(value) for key, value in part.items() if key != "fillopacity"}
         opacity = part.get("fillopacity", 1.0)
         if opacity < 1.0:
             red, green, blue = (
-                int(found["fillcolor"][index : index + 2], 16) for index in (1, 3, 5)
+                int(coloured["fillcolor"][index : index + 2], 16) for index in (1, 3, 5)
             )
-            found["fillcolor"] = f"rgba({red},{green},{blue},{opacity})"
-        return found
+            coloured["fillcolor"] = f"rgba({red},{green},{blue},{opacity})"
+        return coloured
     if isinstance(part, list):
-        return [_coloured(one) for one in part]
+        return [_coloured(item) for item in part]
     return (
         _COLOURS[part[1:]]
         if isinstance(part, str) and part.startswith("@") and part[1:] in _COLOURS

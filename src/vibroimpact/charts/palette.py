@@ -27,6 +27,8 @@ class Look:
         Width of lines [pt].
     opacity : float
         Opacity of areas.
+    line_opacity : float
+        Opacity of lines.
     hatch : str
         Hatch of areas: "", "/", "\\", "|", "-", "x" or ".".
     symbol : str
@@ -43,6 +45,7 @@ class Look:
     dashes: tuple[int, ...] = ()
     width: float = 1.2
     opacity: float = 1.0
+    line_opacity: float = 1.0
     hatch: str = ""
     symbol: str = "circle"
     hollow: bool = False
@@ -73,8 +76,13 @@ LOOKS: dict[str, Look] = {
     "mark": Look("#b3400e", "#ff9a62", hollow=True),
     "other mark": Look("#0b4f8a", "#6cb6ff", symbol="triangle-down", hollow=True),
     "mark line": Look("#b3400e", "#ff9a62", (5, 3), 0.9),
+    # what was measured has one colour: values, samples, and a record over which a curve is drawn
+    "measured": Look("#b3400e", "#ff9a62"),
+    "measured samples": Look("#b3400e", "#ff9a62", size=3.5),
+    "measured record": Look("#b3400e", "#ff9a62", width=2.6, line_opacity=0.4),
     "matched": Look("#b3400e", "#ff9a62"),
-    "sample": Look("#b3400e", "#ff9a62", size=3.5),
+    "published": Look("#b3400e", "#ff9a62"),
+    "difference": Look("#6b6b6b", "#c4c4c4"),
     "fit": Look("#0b4f8a", "#6cb6ff", (6, 2), 1.2),
     "reference": Look("#777777", "#9a9a9a", (4, 3), 0.9),
     "dotted": Look("#1b1b1b", "#e8e8e8", (1, 2), 0.8),
@@ -96,7 +104,7 @@ LOOKS: dict[str, Look] = {
     "pale": Look("#b9c9d8", "#39536b"),
     "ghost": Look("#9a9a9a", "#7d7d7d", (3, 2), 1.2),
     # overlapping curves: the first is wide and pale, so that it is seen under the others
-    "under": Look("#00204d", "#8ab4ff", width=2.6, opacity=0.35),
+    "under": Look("#00204d", "#8ab4ff", width=2.6, line_opacity=0.35),
     # the energy ledger, from the bottom of the stack to its top: distinct in luminance and hatch
     "contact damping": Look("#404040", "#8f8f8f"),
     "plastic work": Look("#9c6b52", "#b98468", hatch="."),

@@ -225,7 +225,8 @@ class _Drawing:
     ) -> None:
         """Add the axes of a panel; one that is shared follows the first panel that has it."""
         for side, axis, domain, other in (("x", panel.x, across, "y"), ("y", panel.y, up, "x")):
-            name, frame = f"{side}{suffix}", self.frames[axis]
+            name = f"{side}{suffix}"
+            frame = self.frames[axis]
             line: dict[str, Any] = {"domain": list(domain), "anchor": f"{other}{suffix}"}
             if axis in first:
                 line["matches"] = first[axis]
@@ -254,10 +255,10 @@ class _Drawing:
             )
 
     def _write(
-        self, words: str, xref: str, yref: str, x: float, y: float, size: int = 12, **more: Any
+        self, phrase: str, xref: str, yref: str, x: float, y: float, size: int = 12, **more: Any
     ) -> None:
         note = {
-            "text": plain(words),
+            "text": plain(phrase),
             "xref": xref,
             "yref": yref,
             "x": x,
@@ -447,27 +448,27 @@ class _Drawing:
         self.data.append(
             {**trace, **({} if mark.cells else {"zsmooth": "best"}), **at, "showlegend": False}
         )
-        for found in contours_of(shown) if mark.contours else ():
+        for contours in contours_of(shown) if mark.contours else ():
             lines = {
                 "type": "contour",
                 "x": mark.x,
                 "y": mark.y,
-                "z": found.values,
+                "z": contours.values,
                 "showscale": False,
                 "hoverinfo": "skip",
             }
-            step = found.levels[1] - found.levels[0] if len(found.levels) > 1 else 1.0
+            step = contours.levels[1] - contours.levels[0] if len(contours.levels) > 1 else 1.0
             # the end lies beyond the last level, which rounding would leave out
             levels = {
                 "coloring": "none",
-                "start": found.levels[0],
-                "end": found.levels[-1] + 0.01 * step,
+                "start": contours.levels[0],
+                "end": contours.levels[-1] + 0.01 * step,
                 "size": step,
             }
             pen = {
                 "color": "@contour",
-                "width": 1.2 * found.width,
-                "dash": "4px,3px" if found.dashed else "solid",
+                "width": 1.2 * contours.width,
+                "dash": "4px,3px" if contours.dashed else "solid",
             }
             self.data.append({**lines, "contours": levels, "line": pen, "showlegend": False, **at})
 
@@ -537,7 +538,8 @@ class _Drawing:
         Its outlines are interrupted by NaN.
         """
         values = mark.values if mark.scale is None else values_on(mark.scale, self.chart.panels)
-        low, high = float(values.min()), float(values.max())
+        low = float(values.min())
+        high = float(values.max())
         if mark.diverging:
             high = max(abs(low), abs(high)) or 1.0
             low = -high

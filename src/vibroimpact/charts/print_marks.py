@@ -156,7 +156,7 @@ class PrintedMarks:
         if not mark.marked:
             across, up = decimated(across, up)
         style = print_pen(look)
-        style["alpha"] = look.opacity if mark.role == "under" else 1.0
+        style["alpha"] = look.line_opacity
         if mark.marked:
             style["marker"] = _SYMBOLS[look.symbol]
             style["markersize"] = 3.5

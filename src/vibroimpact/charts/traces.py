@@ -27,9 +27,9 @@ def line_trace(line: Line) -> dict[str, Any]:
         "y": line.y,
     }
     drawn["line"] = pen(line.role)
-    look = LOOKS[line.role]
-    if look.opacity < 1.0 and line.role == "under":
-        drawn["opacity"] = look.opacity
+    opacity = LOOKS[line.role].line_opacity
+    if opacity < 1.0:
+        drawn["opacity"] = opacity
     drawn |= {"origins": list(line.origins)} if line.origins else {}
     return drawn | ({"marker": _symbol(line.role, 5)} if line.marked else {}) | _texts(line.texts)
 
@@ -43,7 +43,8 @@ def silence(mark: Line | Points, panel: Panel) -> dict[str, Any]:
 
 def points_trace(points: Points) -> dict[str, Any]:
     """Return the trace of points: small ones without an edge where there are many."""
-    many, size = len(points.x) > MANY, LOOKS[points.role].size
+    many = len(points.x) > MANY
+    size = LOOKS[points.role].size
     drawn: dict[str, Any] = {"type": "scatter", "mode": "markers", "x": points.x, "y": points.y}
     dot = {
         "symbol": LOOKS[points.role].symbol,
@@ -68,15 +69,16 @@ def _texts(texts: tuple[str, ...]) -> dict[str, Any]:
     """Return what points are, which takes the place of their coordinates if it has
     several lines.
     """
-    found: dict[str, Any] = {"text": [plain(text) for text in texts]} if texts else {}
-    return found | (
+    settings: dict[str, Any] = {"text": [plain(text) for text in texts]} if texts else {}
+    return settings | (
         {"hovertemplate": "%{text}<extra></extra>"} if texts and "\n" in texts[0] else {}
     )
 
 
 def bars_trace(bars: Bars) -> dict[str, Any]:
     """Return the trace of bars, at places of given widths."""
-    places, width = bars.places, np.full(len(bars.values), bars.width)
+    places = bars.places
+    width = np.full(len(bars.values), bars.width)
     if len(places) == len(bars.values) + 1:
         places, width = 0.5 * (places[1:] + places[:-1]), np.diff(places)
     drawn: dict[str, Any] = {
@@ -151,7 +153,7 @@ def colour_between(stops: tuple[tuple[float, str], ...], part: float) -> str:
     )
 
 
-def plain(words: str) -> str:
+def plain(phrase: str) -> str:
     """Return words that plotly shows as they are: it reads a few tags of HTML, and formulas between
     dollar signs.
 
@@ -161,7 +163,7 @@ def plain(words: str) -> str:
     'a &lt; b &amp; &#36;c&#36;'
     """
     return (
-        words.replace("&", "&amp;")
+        phrase.replace("&", "&amp;")
         .replace("<", "&lt;")
         .replace(">", "&gt;")
         .replace("$", "&#36;")
@@ -179,16 +181,16 @@ def scale_of(axis: Axis, frame: Frame) -> dict[str, Any]:
             "range": [-0.6, len(places) - 0.4],
             "zeroline": False,
         }
-    found: dict[str, Any] = {"type": "log"} if axis.log else {}
-    found |= {"dtick": "D2", "tickformat": "~g"} if axis.log and axis.range is None else {}
+    scale: dict[str, Any] = {"type": "log"} if axis.log else {}
+    scale |= {"dtick": "D2", "tickformat": "~g"} if axis.log and axis.range is None else {}
     if axis.range is not None:
         ends = [
             None if not np.isfinite(end) else float(frame.shown(np.array(end)))
             for end in axis.range
         ]
-        found["range"] = (
+        scale["range"] = (
             [None if end is None else float(np.log10(end)) for end in ends] if axis.log else ends
         )
     if axis.ticks:
-        found |= {"tickvals": frame.shown(np.array(axis.ticks)).tolist()}
-    return found | ({"tickformat": "d"} if axis.integer else {})
+        scale |= {"tickvals": frame.shown(np.array(axis.ticks)).tolist()}
+    return scale | ({"tickformat": "d"} if axis.integer else {})

@@ -63,8 +63,8 @@ def bound(
     from vibroimpact.bayes_error.bound import bound_of
     from vibroimpact.bayes_error.observations import Channel
     from vibroimpact.files.result_folder import check_free
-    from vibroimpact.studies.study import load_study
-    from vibroimpact.studies.sweep_file import load_sweep
+    from vibroimpact.studies.computation.study import load_study
+    from vibroimpact.studies.planning.sweep_file import load_sweep
 
     target = Path(f"{stem(population)}-bound") if output is None else output
     check_free(target, force=force)

@@ -150,7 +150,7 @@ def _calibrated_case(
 
 
 def _is_restitution_table(path: str, columns: str | None) -> bool:
-    from vibroimpact.calibration.impact_table import holds_restitutions
+    from vibroimpact.calibration.records.impact_table import holds_restitutions
 
     return Path(path).suffix.lower() in TABLES and holds_restitutions(path, columns)
 
@@ -180,7 +180,7 @@ def _rebounds_in(
 ) -> Rebounds:
     """Return the rebounds of the bounces in a record."""
     from vibroimpact.calibration.bounces.rebounds import rebounds_of
-    from vibroimpact.calibration.inputs import BRIEF
+    from vibroimpact.calibration.observed.inputs import BRIEF
     from vibroimpact.files.reading import with_path
     from vibroimpact.signals.bounces.find import find_bounces
     from vibroimpact.signals.reading.one_record import one_record

@@ -13,7 +13,7 @@ from dataclasses import fields
 from typing import Any
 
 from vibroimpact.cases.case import case_schema
-from vibroimpact.cases.keys import quantity_keys
+from vibroimpact.cases.sections.keys import quantity_keys
 from vibroimpact.cli.completion import WORDS
 from vibroimpact.contact.registry import contact_laws
 from vibroimpact.exporting.export_format import export_formats
@@ -59,8 +59,8 @@ def _keys_of_case(materials: list[str]) -> dict[str, list[str]]:
     schema = case_schema()
     # such as "drop.position.x", which no schema has
     keys: dict[str, list[str]] = {key: [] for key in quantity_keys({}) if key.count(".") == 2}
-    for key, words in _keys(schema, schema["$defs"]):
-        keys[key] = list(dict.fromkeys([*keys.get(key, []), *words]))
+    for key, phrase in _keys(schema, schema["$defs"]):
+        keys[key] = list(dict.fromkeys([*keys.get(key, []), *phrase]))
     keys["sphere.material"] = materials
     keys["plate.material"] = [*materials, RIGID.name]
     return dict(sorted(keys.items()))

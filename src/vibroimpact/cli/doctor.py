@@ -15,7 +15,7 @@ from vibroimpact._version import __version__
 from vibroimpact.compiled import why_not_compiled
 from vibroimpact.compiler.code_store import code_files, code_folder, code_size
 from vibroimpact.recognition.onnx_runtime import SWITCH
-from vibroimpact.structures.free_memory import free_memory
+from vibroimpact.structures.finite_elements.free_memory import free_memory
 from vibroimpact.structures.store import entries, store_folder, store_size
 
 _SWITCHES = {"onnxruntime": SWITCH}

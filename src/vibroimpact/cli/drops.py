@@ -81,23 +81,23 @@ def run(
 @app.command()
 def check(case: CaseArgument, changes: Changes = None, as_json: Json = False) -> None:
     """Validate and explain a case or a study, without running it."""
-    from vibroimpact.calibration.section import check_target
+    from vibroimpact.calibration.observed.section import check_target
     from vibroimpact.cases.build import check_drop
     from vibroimpact.cases.reader import load_case, load_table, prefix_errors
     from vibroimpact.runs.case_document import case_document
     from vibroimpact.runs.case_explained import case_explained
-    from vibroimpact.studies.explain_sweep import explain_sweep, sweep_document
-    from vibroimpact.studies.sweep_file import sweep_of
+    from vibroimpact.studies.planning.explain_sweep import explain_sweep, sweep_document
+    from vibroimpact.studies.planning.sweep_file import sweep_of
 
     others = settings_of(changes)
     table = prefix_errors(case, lambda: load_table(case, others))
     if "sweep" not in table:
-        found = load_case(case, others)
-        prefix_errors(case, lambda: check_drop(found))
-        prefix_errors(case, lambda: check_target(found.calibrate))
+        loaded = load_case(case, others)
+        prefix_errors(case, lambda: check_drop(loaded))
+        prefix_errors(case, lambda: check_target(loaded.calibrate))
         show(
-            lambda: prefix_errors(case, lambda: case_document(found)),
-            lambda: prefix_errors(case, lambda: case_explained(found)),
+            lambda: prefix_errors(case, lambda: case_document(loaded)),
+            lambda: prefix_errors(case, lambda: case_explained(loaded)),
             as_json=as_json,
         )
         return
@@ -132,7 +132,7 @@ def _run(
     from vibroimpact.report.terminal_report import terminal_report
     from vibroimpact.results.result import result_of
     from vibroimpact.runs.paraview import PARAVIEW, write_paraview
-    from vibroimpact.studies.sweep_file import load_drop
+    from vibroimpact.studies.planning.sweep_file import load_drop
 
     case = load_case(name, changes) if drop is None else load_drop(name, drop, changes)
     target = (
@@ -142,10 +142,10 @@ def _run(
     )
     check_free(target, force=force)  # fail before the computation
     if case.sweep is not None:
-        words = (
+        phrase = (
             f"vibroimpact sweep {shlex.quote(name)} runs the study, and --drop N one of its drops"
         )
-        note(f"[sweep] is left out, as this is a single drop; {words}")
+        note(f"[sweep] is left out, as this is a single drop; {phrase}")
     for sentence in describe_costs(case):
         note(sentence)
     screen = console(err=as_json)
@@ -218,14 +218,14 @@ def modes(
             [Path(case), *(measured or [])], target, figures=figures, force=force, as_json=as_json
         )
         return
-    found = load_case(case, settings_of(changes))
+    loaded = load_case(case, settings_of(changes))
     check_free(target, force=force)
-    for sentence in describe_costs(found, modes_alone=True):
+    for sentence in describe_costs(loaded, modes_alone=True):
         note(sentence)
     screen = console(err=as_json)
     with exit_on_interrupt():
         with patient_progress("computing modes", screen) as progress:
-            bodies = prefix_errors(case, lambda: compute_modes(found, progress, note))
+            bodies = prefix_errors(case, lambda: compute_modes(loaded, progress, note))
         beside = modes_beside_table(bodies, measured) if measured else None
         report = report_of(bodies, beside)
     write_and_show(

@@ -54,9 +54,9 @@ def reproduce(
         with patient_progress("reproducing", screen) as progress:
             folder = reproduce_paper(output, names, force=force, progress=progress, tell=note)
     except KeyboardInterrupt:
-        left = [name for name in missing_parts(output) if names is not None and name in names]
+        missing = [name for name in missing_parts(output) if names is not None and name in names]
         # of parts that were there before it is not known which were computed again
-        again = left or names
+        again = missing or names
         some = f" --only {','.join(again)}" if again else ""
         fail(
             "interrupted; completed parts are kept; continue with: vibroimpact reproduce "

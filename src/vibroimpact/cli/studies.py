@@ -27,7 +27,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.quoting import quoted
 
 if TYPE_CHECKING:
-    from vibroimpact.studies.sweep import Sweep
+    from vibroimpact.studies.planning.sweep import Sweep
 
 MOST_DROPS_UNCONFIRMED = 100_000
 """Number of drops above which a study must be confirmed by --yes."""
@@ -217,21 +217,22 @@ def _run_sweep(
     """
     from vibroimpact.report.progress import counting_progress, patient_progress
     from vibroimpact.report.terminal_report import terminal_report
-    from vibroimpact.studies.compute_study import compute_study
+    from vibroimpact.studies.computation.compute_study import compute_study
+    from vibroimpact.studies.computation.study import load_study
+    from vibroimpact.studies.computation.study_folder import has_study
+    from vibroimpact.studies.planning.sweep_file import load_sweep
+    from vibroimpact.studies.planning.unit_slips import sweep_slips
     from vibroimpact.studies.report.write_report import write_study_report
-    from vibroimpact.studies.study import load_study
-    from vibroimpact.studies.study_folder import has_study
-    from vibroimpact.studies.sweep_file import load_sweep
-    from vibroimpact.studies.unit_slips import sweep_slips
 
     size = quantity_in("--memory", memory, "byte")
     if size < 1e6:
         raise InputError(f"{memory} is too little; it must be 1 MB or more", "--memory")
-    found, screen = load_sweep(study, samples), console(err=as_json)
+    sweep = load_sweep(study, samples)
+    screen = console(err=as_json)
     if command == "dataset":
-        _check_labelled(study, found)
-    _check_confirmed(study, found, yes=yes or (resume and has_study(target)))
-    for doubt in sweep_slips(found):
+        _check_labelled(study, sweep)
+    _check_confirmed(study, sweep, yes=yes or (resume and has_study(target)))
+    for doubt in sweep_slips(sweep):
         note(f"doubt: {doubt}")  # before the computation, not only in the report
     with (
         patient_progress("computing modes", screen) as modes,
@@ -252,7 +253,7 @@ def _run_sweep(
 
         raise_if_stopped()
         folder = compute_study(
-            found,
+            sweep,
             target,
             resume=resume,
             force=force,
@@ -263,7 +264,7 @@ def _run_sweep(
             modes_progress=modes_progress,
             tell=note,
         )
-        progress(found.size, found.size)
+        progress(sweep.size, sweep.size)
         completed = load_study(folder)
         write_study_report(completed)
     show(
@@ -279,36 +280,36 @@ def _run_sweep(
     )
 
 
-def _check_labelled(study: str, found: Sweep) -> None:
+def _check_labelled(study: str, sweep: Sweep) -> None:
     """Raise InputError if a study has no classes, or does not keep signals."""
-    if found.population is None:
-        words = (
+    if sweep.population is None:
+        message = (
             'a data set has classes: give design = "population" and tables such as '
             "[sweep.classes.coal.over]"
         )
-        raise InputError(f"{study}: sweep.design: {words}")
-    if "signals" not in found.section.keep:
+        raise InputError(f"{study}: sweep.design: {message}")
+    if "signals" not in sweep.section.keep:
         raise InputError(
             f"{study}: sweep.keep: a data set has signals, and these are not kept; give "
             'keep = ["signals"]'
         )
 
 
-def _check_confirmed(study: str, found: Sweep, *, yes: bool) -> None:
+def _check_confirmed(study: str, sweep: Sweep, *, yes: bool) -> None:
     """Raise InputError if a study is large and not confirmed."""
-    if found.size > MOST_DROPS_UNCONFIRMED and not yes:
+    if sweep.size > MOST_DROPS_UNCONFIRMED and not yes:
         raise InputError(
-            f"{study}: there would be {found.size:,} drops, more than "
+            f"{study}: there would be {sweep.size:,} drops, more than "
             f"{MOST_DROPS_UNCONFIRMED:,}; confirm that they are wanted with --yes"
         )
-    if found.bytes > MOST_BYTES_UNCONFIRMED and not yes:
-        words = (
-            f"the results would take about {found.bytes / 1e9:.3g} GB, more than "
+    if sweep.bytes > MOST_BYTES_UNCONFIRMED and not yes:
+        message = (
+            f"the results would take about {sweep.bytes / 1e9:.3g} GB, more than "
             f"{MOST_BYTES_UNCONFIRMED / 1e9:g} GB"
         )
-        keep = quoted(list(found.section.keep))
+        keep = quoted(list(sweep.section.keep))
         raise InputError(
-            f"{study}: {words}; confirm that they are wanted with --yes, or keep less: "
+            f"{study}: {message}; confirm that they are wanted with --yes, or keep less: "
             f"sweep.keep is {keep}"
         )
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from textwrap import wrap
 from typing import Any, NamedTuple
 
-from vibroimpact.calibration.adams_dialog import dialog_rows
+from vibroimpact.calibration.contact_law.adams_dialog import dialog_rows
 from vibroimpact.exporting.adams_contact import AdamsContact, Names, adams_contact
 from vibroimpact.exporting.adams_motion import AdamsMotion, adams_friction, adams_motion
 from vibroimpact.exporting.adams_text import LINE

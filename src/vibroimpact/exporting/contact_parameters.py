@@ -180,13 +180,14 @@ def shared_notes(drop: Drop) -> list[str]:
                 f"the function of {name} was fitted over {function.slowest:.4g} to "
                 f"{function.fastest:.4g} m/s"
             )
-            slowest, fastest = f"{speeds.min():.4g}", f"{speeds.max():.4g}"
-            there = (
+            slowest = f"{speeds.min():.4g}"
+            fastest = f"{speeds.max():.4g}"
+            impacts_of_drop = (
                 f"impacts at {slowest} to {fastest}"
                 if slowest != fastest
                 else f"an impact at {fastest}"
             )
-            notes.append(f"{fitted}, and this drop has {there} m/s.")
+            notes.append(f"{fitted}, and this drop has {impacts_of_drop} m/s.")
     return notes
 
 
@@ -194,7 +195,8 @@ def _rigid_notes(drop: Drop) -> list[str]:
     """Return what the rigid-body version of a drop neglects, how that changes the
     restitution, and a remedy.
     """
-    lost, remedy = [], []
+    lost = []
+    remedy = []
     if drop.elastic:
         verb = "is" if len(drop.elastic) == 1 else "are"
         lost.append(
@@ -217,14 +219,16 @@ def _rigid_notes(drop: Drop) -> list[str]:
         remedy.append("no contact.finite_sphere")
     if not drop.original_impacts:
         return lost
-    written, here = (_restitutions(impacts) for impacts in (drop.impacts, drop.original_impacts))
+    written, original = (
+        _restitutions(impacts) for impacts in (drop.impacts, drop.original_impacts)
+    )
     return [
         *lost,
         "The exported drop therefore differs from the one that was run: it is the same case "
         "between rigid bodies, with the first "
         "value of the contact law at its first impact, and so on; a parameter that depends "
         "on the approach speed has the value at its own.",
-        f"Restitution from impact to impact: {written} as written, {here} in the run.",
+        f"Restitution from impact to impact: {written} as written, {original} in the run.",
         _remedy(drop, remedy),
     ]
 

@@ -16,8 +16,12 @@ def formats_document() -> dict[str, Any]:
     """
     return {
         "formats": {
-            name: {"program": one.program, "files": one.files, "tested": one.tested}
-            for name, one in export_formats().items()
+            name: {
+                "program": export_format.program,
+                "files": export_format.files,
+                "tested": export_format.tested,
+            }
+            for name, export_format in export_formats().items()
         }
     }
 
@@ -26,10 +30,10 @@ def export_document(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> 
     """Return the files written, the limitations of the format for this drop, the doubts
     about it, the tests of the writer, and a dialog.
     """
-    told: dict[str, Any] = {
+    document: dict[str, Any] = {
         "format": format.name,
         "files": [str(file) for file in files],
         "notes": format.notes(drop),
     }
-    told |= {"doubts": list(drop.doubts), "tested": format.tested}
-    return told | ({"adams_dialog": dialog} if (dialog := format.dialog(drop)) else {})
+    document |= {"doubts": list(drop.doubts), "tested": format.tested}
+    return document | ({"adams_dialog": dialog} if (dialog := format.dialog(drop)) else {})

@@ -41,8 +41,8 @@ def tables_of(drop: Drop) -> dict[str, Table]:
 
 
 def _table(values: Mapping[str, Floats], columns: Mapping[str, Column]) -> Table:
-    found = {}
+    table = {}
     for name, column in columns.items():
         kind = np.int64 if column.values == "count" else np.float64
-        found[name] = TableColumn(np.asarray(values[name], dtype=kind), column.unit, column.meaning)
-    return found
+        table[name] = TableColumn(np.asarray(values[name], dtype=kind), column.unit, column.meaning)
+    return table

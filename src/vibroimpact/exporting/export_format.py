@@ -61,13 +61,16 @@ def export_formats() -> Mapping[str, ExportFormat]:
     True
     """
     modules = modules_in("vibroimpact.exporting.formats")
-    found = [
+    formats = [
         value
         for module in modules
         for value in vars(module).values()
         if isinstance(value, ExportFormat)
     ]
-    return {one.name: one for one in sorted(found, key=lambda one: one.name)}
+    return {
+        export_format.name: export_format
+        for export_format in sorted(formats, key=lambda export_format: export_format.name)
+    }
 
 
 def find_export_format(name: str) -> ExportFormat:

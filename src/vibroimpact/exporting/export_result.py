@@ -60,11 +60,11 @@ def export_result(
     ...     [file.name for file in export_result(folder, "csv")]
     ['impacts.csv', 'history.csv']
     """
-    found = find_export_format(format)
-    drop = found.prepare(load_drop(directory))
+    export_format = find_export_format(format)
+    drop = export_format.prepare(load_drop(directory))
     return save_export(
         drop,
-        found,
+        export_format,
         default_output(directory, format) if output is None else Path(output),
         force=force,
     )

@@ -6,12 +6,12 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from vibroimpact.calibration.file_contents import CALIBRATION
+from vibroimpact.calibration.contact_law.file_contents import CALIBRATION
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.oblique import normal_motion_of, oblique_of
-from vibroimpact.cases.plate_motion import motion_of
 from vibroimpact.cases.reader import case_of, load_case
-from vibroimpact.cases.rigid_problem import (
+from vibroimpact.cases.rigid.oblique import normal_motion_of, oblique_of
+from vibroimpact.cases.rigid.plate_motion import motion_of
+from vibroimpact.cases.rigid.rigid_problem import (
     by_speed_of,
     deforms,
     elastic_names,
@@ -77,21 +77,27 @@ def drop_of_result(
     """
     _check_flat(case)
     if function is not None and by_speed_of(case):
-        words = (
+        message = (
             f"{function[0]} is fitted over the approach speed, and another parameter is given "
             "as a function of it"
         )
         raise InputError(
-            f"{words}; give that as a number", f"contact.{next(iter(by_speed_of(case)))}"
+            f"{message}; give that as a number", f"contact.{next(iter(by_speed_of(case)))}"
         )
-    found, motion = result.deflection, normal_motion_of(case)
+    deflection = result.deflection
+    motion = normal_motion_of(case)
     surface = (
         {}
-        if found is None
-        else {"time": found.time, "x": found.x, "y": found.y, "height": found.height.astype(float)}
+        if deflection is None
+        else {
+            "time": deflection.time,
+            "x": deflection.x,
+            "y": deflection.y,
+            "height": deflection.height.astype(float),
+        }
     )
-    if found is not None:
-        surface["sphere_position"] = found.sphere_position
+    if deflection is not None:
+        surface["sphere_position"] = deflection.sphere_position
     return Drop(
         name=result.name,
         radius=float(case.sphere.radius),
@@ -101,7 +107,7 @@ def drop_of_result(
         plate_material=case.plate.material,
         plate_size=case.plate.size,
         # the impact point may be given as a node set of an imported mesh
-        position=case.drop.position if found is None else found.contact,
+        position=case.drop.position if deflection is None else deflection.contact,
         height=float(motion.get("height", case.sphere.radius)),
         speed=float(motion.get("speed", 0.0 - motion.get("velocity", 0.0))),
         gravity=float(motion["gravity"]),
@@ -159,16 +165,16 @@ def _of_calibration(folder: Path) -> Drop:
     return drop_of_result(result_of(simulate(case.to_problem())), case, function)
 
 
-def _fitted(found: dict[str, Any]) -> tuple[str, SpeedFunction] | None:
+def _fitted(calibration: dict[str, Any]) -> tuple[str, SpeedFunction] | None:
     """Return the fitted function; None if it is a constant, which the case holds, or not
     of a parameter of the contact law.
     """
-    if "parameters" in found:  # of the friction
+    if "parameters" in calibration:  # of the friction
         return None
-    fit = found["fit"]
-    coefficients = tuple(float(one) for one in fit["coefficients"])
-    if len(coefficients) == 1 or "." in found["parameter"]:
+    fit = calibration["fit"]
+    coefficients = tuple(float(coefficient) for coefficient in fit["coefficients"])
+    if len(coefficients) == 1 or "." in calibration["parameter"]:
         return None
-    return str(found["parameter"]), SpeedFunction(
+    return str(calibration["parameter"]), SpeedFunction(
         coefficients, float(fit["from_speed_m_s"]), float(fit["to_speed_m_s"])
     )

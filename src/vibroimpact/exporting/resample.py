@@ -46,24 +46,27 @@ def motion_at(history: Mapping[str, Floats], times: Floats) -> dict[str, Floats]
     step = time[before + 1] - time[before]
     # a step of zero length is met only at the end, where the value after the jump holds
     part = np.divide(times - time[before], step, out=np.ones_like(times), where=step > 0.0)
-    position, velocity = history["position_m"], history["velocity_m_s"]
-    acceleration, force = history["acceleration_m_s2"], history["force_N"]
-    found = {
+    position = history["position_m"]
+    velocity = history["velocity_m_s"]
+    acceleration = history["acceleration_m_s2"]
+    force = history["force_N"]
+    motion = {
         "position_m": _cubic(position, velocity, before, step, part),
         "velocity_m_s": _cubic(velocity, acceleration, before, step, part),
         "acceleration_m_s2": _linear(acceleration, before, part),
         "force_N": _linear(force, before, part),
     }
     if "position_x_m" in history:
-        found |= {
+        motion |= {
             name: _linear(history[name], before, part)
             for name, column in OBLIQUE_HISTORY_COLUMNS.items()
             if not column.in_ledger
         }
         for axis in "xy":
-            along, speed = history[f"position_{axis}_m"], history[f"velocity_{axis}_m_s"]
-            found[f"position_{axis}_m"] = _cubic(along, speed, before, step, part)
-    return found
+            along = history[f"position_{axis}_m"]
+            speed = history[f"velocity_{axis}_m_s"]
+            motion[f"position_{axis}_m"] = _cubic(along, speed, before, step, part)
+    return motion
 
 
 def _linear(values: Floats, before: Indices, part: Floats) -> Floats:
@@ -73,5 +76,6 @@ def _linear(values: Floats, before: Indices, part: Floats) -> Floats:
 def _cubic(values: Floats, slopes: Floats, before: Indices, step: Floats, part: Floats) -> Floats:
     """Return the cubic Hermite interpolant of values and slopes at both ends of each step."""
     rise = values[before + 1] - values[before]
-    bend, twist = step * slopes[before] - rise, step * slopes[before + 1] - rise
+    bend = step * slopes[before] - rise
+    twist = step * slopes[before + 1] - rise
     return values[before] + part * (rise + (1.0 - part) * ((1.0 - part) * bend - part * twist))

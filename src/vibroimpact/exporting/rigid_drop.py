@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.calibration.single_impacts import first_approach_speed
+from vibroimpact.calibration.fit.single_impacts import first_approach_speed
 from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
@@ -78,14 +78,16 @@ def _by_function(problem: Problem, name: str, function: SpeedFunction) -> Respon
     each pass fixes at least one more. Convergence is usually much faster, since the parameter
     varies slowly with the speed.
     """
-    law, speeds = problem.laws[0], np.array([first_approach_speed(problem)])
+    law = problem.laws[0]
+    speeds = np.array([first_approach_speed(problem)])
     for _ in range(_PASSES):
         response = simulate(
             replace(
                 problem, laws=tuple(law_at(law, name, function, float(speed)) for speed in speeds)
             )
         )
-        before, speeds = speeds, response.impacts["approach_speed_m_s"]
+        before = speeds
+        speeds = response.impacts["approach_speed_m_s"]
         if not len(speeds) or (
             len(speeds) == len(before) and np.allclose(speeds, before, rtol=_SAME, atol=0.0)
         ):

@@ -9,7 +9,7 @@ from pathlib import Path
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from vibroimpact.calibration.adams_dialog import dialog_table
+from vibroimpact.calibration.contact_law.adams_dialog import dialog_table
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, export_formats
 from vibroimpact.report.terminal_report import block_lines, warning_lines
@@ -24,10 +24,10 @@ def format_table() -> RenderableType:
     """Return the table of export formats."""
     formats = export_formats()
     said = {
-        "read by": [one.program for one in formats.values()],
-        "files": [one.files for one in formats.values()],
+        "read by": [format.program for format in formats.values()],
+        "files": [format.files for format in formats.values()],
     }
-    said["tested"] = [one.tested for one in formats.values()]
+    said["tested"] = [format.tested for format in formats.values()]
     table = TerminalTable(
         [
             TerminalColumn("format", list(formats), text=True),
@@ -49,7 +49,8 @@ def export_summary(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> R
     doubts about the drop, and how it was tested.
     """
     shown = files if len(files) <= _MOST else files[: _MOST - 1]
-    dialog, speeds = format.dialog(drop), drop.impacts["approach_speed_m_s"].tolist()
+    dialog = format.dialog(drop)
+    speeds = drop.impacts["approach_speed_m_s"].tolist()
     names = [f"impact {number} at {digits(speed)} m/s" for number, speed in enumerate(speeds, 1)]
     typed = list(block_lines(dialog_table(dialog, names))) if dialog else []
     more = f"and {len(files) - len(shown)} more files in {commonpath(files)}"

@@ -100,8 +100,8 @@ def plain_words(name: str) -> str:
     >>> plain_words('a "hard" rock, 4 m --> $HOME &')
     'a hard rock, 4 m - HOME'
     """
-    words = re.sub(r"[^A-Za-z0-9.,'()+=%/_-]+", " ", name)
-    return re.sub("-{2,}", "-", words)[:_LONGEST].strip(" .,'+=%/_-") or "without a name"
+    phrase = re.sub(r"[^A-Za-z0-9.,'()+=%/_-]+", " ", name)
+    return re.sub("-{2,}", "-", phrase)[:_LONGEST].strip(" .,'+=%/_-") or "without a name"
 
 
 def one_line(name: str) -> str:

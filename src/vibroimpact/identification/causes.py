@@ -90,18 +90,18 @@ def causes(
     return differences, share
 
 
-def remedy(plate: Plate, found: list[Cause]) -> str:
+def remedy(plate: Plate, causes: list[Cause]) -> str:
     """Return the options that state differences, and what was stated before."""
     sizes: dict[str, float] = {}
-    for cause in found:
+    for cause in causes:
         sizes[cause.name] = max(_rounded_up(cause.size), sizes.get(cause.name, 0.0))
     return plate.errors.at_least(sizes).options
 
 
-def told(found: list[Cause]) -> str:
+def told(causes: list[Cause]) -> str:
     """Return the largest differences in words."""
-    more = f", and {len(found) - _NAMED} more" if len(found) > _NAMED else ""
-    return ", ".join(cause.description for cause in found[:_NAMED]) + more
+    more = f", and {len(causes) - _NAMED} more" if len(causes) > _NAMED else ""
+    return ", ".join(cause.description for cause in causes[:_NAMED]) + more
 
 
 def _stretch(free: SphereFit, exponent: float) -> Iterator[Cause]:

@@ -17,12 +17,12 @@ from vibroimpact.signals.estimate import Estimate
 _HEIGHT = 3.2
 
 
-def identification_charts(found: Identification) -> list[Chart]:
+def identification_charts(identification: Identification) -> list[Chart]:
     """Return the charts of an identification.
 
     Parameters
     ----------
-    found : Identification
+    identification : Identification
         What was identified.
 
     Returns
@@ -61,32 +61,34 @@ def identification_charts(found: Identification) -> list[Chart]:
     ['records', 'force']
     """
     makers = {"records": _records_chart, "force": _force_chart}
-    if found.search.misfit.size > 1:
+    if identification.search.misfit.size > 1:
         makers["place"] = _place_chart
-    return made_charts({name: partial(make, found) for name, make in makers.items()})
+    return made_charts({name: partial(make, identification) for name, make in makers.items()})
 
 
-def _records_chart(found: Identification) -> Chart:
-    measured = found.measured
-    time = np.arange(measured.value.shape[1]) / measured.rate - found.sphere.parameters[4]
-    axis, rows = Axis("Time since first touch", "s"), []
-    for sensor, value, left in zip(
-        measured.sensors, measured.value, found.sphere.residual, strict=True
+def _records_chart(identification: Identification) -> Chart:
+    measured = identification.measured
+    time = np.arange(measured.value.shape[1]) / measured.rate - identification.sphere.parameters[4]
+    axis = Axis("Time since first touch", "s")
+    rows = []
+    for sensor, value, residual in zip(
+        measured.sensors, measured.value, identification.sphere.residual, strict=True
     ):
         name = shortened(visible(sensor.name), 40)
         lines = (
-            Line(time, value, "record"),
-            Line(time, value - left, "fit", "fit"),
-            Line(time, left, "what is left", "mark line"),
+            Line(time, value, "record", "measured"),
+            Line(time, value - residual, "fit", "fit"),
+            Line(time, residual, "residual", "difference"),
         )
         rows.append((Panel(axis, Axis(sensor.quantity.capitalize(), sensor.unit), lines, name),))
     caption = "Each record, the signal of the sphere that explains all of them, and the difference."
     return Chart("records", "Records and fit", tuple(rows), caption, _HEIGHT)
 
 
-def _force_chart(found: Identification) -> Chart:
-    force, contact = found.force, found.sphere.force
-    touch = float(found.sphere.parameters[4])
+def _force_chart(identification: Identification) -> Chart:
+    force = identification.force
+    contact = identification.sphere.force
+    touch = float(identification.sphere.parameters[4])
     marks: tuple[Band | Line, ...] = (
         Line(contact.time, contact.value, "contact of the sphere that was found", "fit"),
     )
@@ -95,7 +97,8 @@ def _force_chart(found: Identification) -> Chart:
         "the records alone contradicts it: withheld."
     )
     if force is not None:
-        time, spread = force.time - touch, Estimate(0.0, 1.0).interval[1] * force.found.deviation
+        time = force.time - touch
+        spread = Estimate(0.0, 1.0).interval[1] * force.found.deviation
         band = Band(time, force.found.force - spread, force.found.force + spread, "95 %", "band")
         marks = (band, Line(time, force.found.force, "from the records alone"), *marks)
         caption = (
@@ -106,26 +109,28 @@ def _force_chart(found: Identification) -> Chart:
     return Chart("force", "Contact force", ((panel,),), caption, _HEIGHT)
 
 
-def _place_chart(found: Identification) -> Chart:
-    search, sensors = found.search, {sensor.name: sensor for sensor in found.measured.sensors}
-    there = [
-        (one.name, one.position)
-        for one in found.plate.case.sensors
-        if one.name in sensors and not isinstance(one.position, str)
+def _place_chart(identification: Identification) -> Chart:
+    search = identification.search
+    sensors = {sensor.name: sensor for sensor in identification.measured.sensors}
+    sensor_positions = [
+        (sensor.name, sensor.position)
+        for sensor in identification.plate.case.sensors
+        if sensor.name in sensors and not isinstance(sensor.position, str)
     ]
-    names, at = (
-        [shortened(visible(name), 40) for name, _ in there],
-        np.array([place for _, place in there]).reshape(-1, 2),
-    )
+    names = [shortened(visible(name), 40) for name, _ in sensor_positions]
+    at = np.array([place for _, place in sensor_positions]).reshape(-1, 2)
     scale = Axis("Part of the records' energy that a pulse there explains", range=(0.0, 1.0))
     places = np.array(
-        [found.sphere.parameters[:2].tolist(), *(one.place for one in search.candidates[1:])]
+        [
+            identification.sphere.parameters[:2].tolist(),
+            *(candidate.place for candidate in search.candidates[1:]),
+        ]
     )
     texts = ("the force", *("as likely" for _ in search.candidates[1:]))
     marks = (
         Map(search.x, search.y, 1.0 - search.misfit, scale),
         Points(at[:, 0], at[:, 1], "sensors", "sensor", tuple(names)),
-        Points(places[:, 0], places[:, 1], "place of the force", "matched", texts),
+        Points(places[:, 0], places[:, 1], "place of the force", "mark", texts),
     )
     panel = Panel(Axis("x on the plate", "m"), Axis("y on the plate", "m"), marks)
     caption = (

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.cases.pair import resized
-from vibroimpact.cases.rigid_problem import rigid_problem
-from vibroimpact.cases.schema import CaseTable
+from vibroimpact.cases.rigid.pair import resized
+from vibroimpact.cases.rigid.rigid_problem import rigid_problem
+from vibroimpact.cases.sections.schema import CaseTable
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate_together

@@ -119,10 +119,10 @@ def force_behind(
         by_setup = setup_slopes(setting.plate, plate, setting.numbers, names, place, signals)
         errors = np.concatenate([errors, np.tensordot(setting.errors.T, by_setup, 1)])
     whiten = whitening((errors * measured.weights).reshape(len(errors), -1).T)
-    found = _smooth(whiten(matrix), whiten(record), kinks)
+    force = _smooth(whiten(matrix), whiten(record), kinks)
 
-    residual = (record - matrix @ found.force).reshape(measured.value.shape)
-    return Force(nodes.time, found, measured.noise[:, None] * residual)
+    residual = (record - matrix @ force.force).reshape(measured.value.shape)
+    return Force(nodes.time, force, measured.noise[:, None] * residual)
 
 
 class _Nodes(NamedTuple):

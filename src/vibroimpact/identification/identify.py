@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vibroimpact.cases.pair import ball_of, resized
-from vibroimpact.cases.schema import CaseTable
+from vibroimpact.cases.rigid.pair import ball_of, resized
+from vibroimpact.cases.sections.schema import CaseTable
 from vibroimpact.errors import InputError
 from vibroimpact.identification.doubts import contradiction, doubts_about
 from vibroimpact.identification.force import Force, force_behind

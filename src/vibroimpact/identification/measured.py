@@ -11,7 +11,7 @@ import numpy as np
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.reader import load_case
-from vibroimpact.cases.schema import CaseTable
+from vibroimpact.cases.sections.schema import CaseTable
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError, did_you_mean

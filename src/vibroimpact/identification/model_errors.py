@@ -14,7 +14,7 @@ from vibroimpact.identification.plate import Plate, compliances_of, shapes_of
 
 def model_error_signals(
     plate: Plate,
-    there: Problem,
+    touched: Problem,
     names: Sequence[str],
     rate: float,
     times: Floats,
@@ -31,7 +31,7 @@ def model_error_signals(
     ----------
     plate : Plate
         The plate.
-    there : Problem
+    touched : Problem
         The problem with the contact at the place of the force.
     names : sequence of str
         Names of the S sensors.
@@ -47,11 +47,11 @@ def model_error_signals(
     def signals(responses: Floats) -> Floats:
         return sampled_responses(responses, rate, times, impulses, samples)
 
-    residual = compliances_of(there, names)[:, None] * plate.heard(names).residual
+    residual = compliances_of(touched, names)[:, None] * plate.heard(names).residual
     # the error of a sensor's static response moves its record alone
     of_residuals = plate.model_error * np.eye(sensors)[:, :, None] * signals(residual)
 
-    shapes = shapes_of(there)
+    shapes = shapes_of(touched)
     modes = len(shapes)
     detuned = (plate.frequency_errors * shapes)[:, None, None] * plate.detuned(names)
     of_frequencies = signals(detuned.reshape(modes * sensors, -1))

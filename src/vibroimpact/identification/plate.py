@@ -15,8 +15,8 @@ from vibroimpact.cases.build import check_case, problem_of
 from vibroimpact.cases.elastic.coupling import at_place, treatment_of
 from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
-from vibroimpact.cases.oblique import oblique_keys
-from vibroimpact.cases.schema import CaseTable
+from vibroimpact.cases.rigid.oblique import oblique_keys
+from vibroimpact.cases.sections.schema import CaseTable
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.place_responses import (
     PlaceResponses,
@@ -27,10 +27,10 @@ from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.dynamics.vibrating.vibrating_bodies import bases_of_plate
 from vibroimpact.errors import InputError
 from vibroimpact.identification.setup import Setup, SetupErrors, stretched, with_resonance
+from vibroimpact.structures.finite_elements.surface import Side, place_of
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel, rigid_basis
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids
 from vibroimpact.structures.static_compliance import computed_compliances
-from vibroimpact.structures.surface import Side, place_of
 
 Place = tuple[float, float]
 """x and y on the plate [m]."""

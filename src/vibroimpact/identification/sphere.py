@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.cases.pair import contact_pair, sphere_density
+from vibroimpact.cases.rigid.pair import contact_pair, sphere_density
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.place_responses import PlaceResponses, sampled_responses
 from vibroimpact.identification.contact import ContactForce, Spheres, contact_forces_of

@@ -56,7 +56,9 @@ def comparison_charts(comparison: Comparison) -> list[Chart]:
     """
     roles = {name: series(number) for number, name in enumerate(comparison.results)}
     forceful = {
-        name: one for name, one in comparison.results.items() if len(contacts_with_duration(one))
+        name: result
+        for name, result in comparison.results.items()
+        if len(contacts_with_duration(result))
     }
     makers = {"position": partial(_position_chart, comparison.results, roles)}
     if forceful:
@@ -67,14 +69,16 @@ def comparison_charts(comparison: Comparison) -> list[Chart]:
 
 
 def _position_chart(results: Mapping[str, Result], roles: Mapping[str, str]) -> Chart:
-    end = max(float(one.history["time_s"][-1]) for one in results.values())
+    end = max(float(result.history["time_s"][-1]) for result in results.values())
     lines = []
-    for name, one in results.items():
-        history = drawn_history(one)
-        time, height = history["time_s"], history["position_m"]
+    for name, result in results.items():
+        history = drawn_history(result)
+        time = history["time_s"]
+        height = history["position_m"]
         # it stays there until the longest run ends
-        if one.status.startswith("At rest") and time[-1] < end:
-            time, height = np.append(time, end), np.append(height, height[-1])
+        if result.status.startswith("At rest") and time[-1] < end:
+            time = np.append(time, end)
+            height = np.append(height, height[-1])
         lines.append(Line(time, height, name, roles[name]))
     views = _first_contact(results)
     time_axis = Axis("Time", "s", views=views)
@@ -94,13 +98,14 @@ def _first_contact(results: Mapping[str, Result]) -> tuple[View, ...]:
     """Return the view of the first impact, which begins at the same time under all laws;
     none if no contact lasts.
     """
-    lasting = [one for one in results.values() if len(one.impacts["time_s"])]
-    longest = max((float(one.impacts["duration_s"][0]) for one in lasting), default=0.0)
-    run = max(float(one.history["time_s"][-1]) for one in results.values())
+    lasting = [result for result in results.values() if len(result.impacts["time_s"])]
+    longest = max((float(result.impacts["duration_s"][0]) for result in lasting), default=0.0)
+    run = max(float(result.history["time_s"][-1]) for result in results.values())
     if not 0.0 < longest < 0.5 * run:
         return ()
     touch = float(lasting[0].impacts["time_s"][0])
-    start, end = touch - MARGIN * longest, touch + (1.0 + MARGIN) * longest
+    start = touch - MARGIN * longest
+    end = touch + (1.0 + MARGIN) * longest
     return (
         View(
             "Impact 1",
@@ -117,11 +122,16 @@ def _first_contact(results: Mapping[str, Result]) -> tuple[View, ...]:
 
 def _force_chart(results: Mapping[str, Result], roles: Mapping[str, str]) -> Chart:
     marks = []
-    for name, one in results.items():
-        impact = contacts_with_duration(one)[0]
-        part = contact_history(one, impact)
+    for name, result in results.items():
+        impact = contacts_with_duration(result)[0]
+        part = contact_history(result, impact)
         marks.append(
-            Line(part["time_s"] - one.impacts["time_s"][impact], part["force_N"], name, roles[name])
+            Line(
+                part["time_s"] - result.impacts["time_s"][impact],
+                part["force_N"],
+                name,
+                roles[name],
+            )
         )
     panel = Panel(Axis("Time since first touch", "s"), Axis("Contact force", "N"), tuple(marks))
     return Chart(
@@ -135,7 +145,8 @@ def _force_chart(results: Mapping[str, Result], roles: Mapping[str, str]) -> Cha
 
 def _loops_chart(results: Mapping[str, Result], roles: Mapping[str, str]) -> Chart:
     parts = {
-        name: contact_history(one, contacts_with_duration(one)[0]) for name, one in results.items()
+        name: contact_history(result, contacts_with_duration(result)[0])
+        for name, result in results.items()
     }
     marks = tuple(
         Line(part["indentation_m"], part["force_N"], name, roles[name])
@@ -154,9 +165,9 @@ def _loops_chart(results: Mapping[str, Result], roles: Mapping[str, str]) -> Cha
 
 def _restitution_chart(comparison: Comparison, roles: Mapping[str, str]) -> Chart:
     marks: list[Mark] = []
-    for name, one in comparison.results.items():
+    for name, result in comparison.results.items():
         marks.append(Line(comparison.speeds, comparison.restitutions[name], name, roles[name]))
-        impacts = one.impacts
+        impacts = result.impacts
         texts = tuple(
             f"impact {impact + 1} with {name}"
             for impact in range(len(impacts["approach_speed_m_s"]))
@@ -171,10 +182,10 @@ def _restitution_chart(comparison: Comparison, roles: Mapping[str, str]) -> Char
         )
     asked = _asked(comparison.results)
     marks += [Level(value, role="dotted") for value in asked]
-    words = zip(asked, spread_labels(asked, _LABEL), strict=True)
+    phrase = zip(asked, spread_labels(asked, _LABEL), strict=True)
     marks += [
         Label(1.0, (place + 0.5 * _LABEL) / _TOP, f"asked {value:.4g}", "right", corner=True)
-        for value, place in words
+        for value, place in phrase
     ]
     speed = Axis("Approach speed", "m/s", log=True)
     panel = Panel(
@@ -194,9 +205,9 @@ def _restitution_chart(comparison: Comparison, roles: Mapping[str, str]) -> Char
 def _asked(results: Mapping[str, Result]) -> list[float]:
     """Return the restitutions asked of the first impact, ascending, to four digits."""
     first = (
-        float(one.impacts["restitution_asked"][0])
-        for one in results.values()
-        if len(one.impacts["restitution_asked"])
+        float(result.impacts["restitution_asked"][0])
+        for result in results.values()
+        if len(result.impacts["restitution_asked"])
     )
     return sorted({float(f"{value:.4g}") for value in first if np.isfinite(value)})
 
@@ -209,7 +220,7 @@ def spread_labels(places: Sequence[float], gap: float) -> list[float]:
     >>> [round(place, 3) for place in spread_labels([0.1, 0.7, 0.716, 0.72], 0.04)]
     [0.1, 0.7, 0.74, 0.78]
     """
-    found: list[float] = []
+    positions: list[float] = []
     for place in places:
-        found.append(max(place, found[-1] + gap) if found else place)
-    return found
+        positions.append(max(place, positions[-1] + gap) if positions else place)
+    return positions

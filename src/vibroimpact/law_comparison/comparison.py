@@ -10,8 +10,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.pair import contact_pair, sphere_density
-from vibroimpact.cases.rigid_problem import contact_laws_of, touch_speed
+from vibroimpact.cases.rigid.pair import contact_pair, sphere_density
+from vibroimpact.cases.rigid.rigid_problem import contact_laws_of, touch_speed
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.dynamics.simulate import simulate
@@ -99,13 +99,18 @@ def compare_laws(
     {'hunt-crossley': 0.739, 'flores': 0.63}
     """
     cases = cases_under(case, laws, given, achieving)
-    mass, speed = contact_pair(case).effective_mass, touch_speed(case)
+    mass = contact_pair(case).effective_mass
+    speed = touch_speed(case)
     speeds = speed * np.geomspace(1e-3, 3.0, _SPEEDS)
-    first, results, restitutions = {}, {}, {}
-    for number, (name, one) in enumerate(cases.items()):
-        results[name] = result_of(simulate(one))
-        first[name] = contact_laws_of(one)[0]
-        restitutions[name] = achieved_restitution(_around(one, first[name], speeds), mass, speeds)
+    first = {}
+    results = {}
+    restitutions = {}
+    for number, (name, law_case) in enumerate(cases.items()):
+        results[name] = result_of(simulate(law_case))
+        first[name] = contact_laws_of(law_case)[0]
+        restitutions[name] = achieved_restitution(
+            _around(law_case, first[name], speeds), mass, speeds
+        )
         if progress is not None:
             progress((number + 1) / len(cases))
     return Comparison(case.name or "a drop", results, first, speeds, restitutions)

@@ -10,9 +10,9 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.contact import in_table
 from vibroimpact.cases.fields.local import LocalSection
-from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.reader import case_of
-from vibroimpact.cases.rigid_problem import contact_laws_of, touch_speed
+from vibroimpact.cases.rigid.pair import contact_pair
+from vibroimpact.cases.rigid.rigid_problem import contact_laws_of, touch_speed
 from vibroimpact.contact.law import ContactLaw, unit_of
 from vibroimpact.contact.registry import find_contact_law
 from vibroimpact.dynamics.restitution import law_achieving
@@ -71,7 +71,8 @@ def cases_under(
     >>> cases["flores"].contact.parameters["restitution"]
     0.7
     """
-    names, table = list(laws), dict(given or {})
+    names = list(laws)
+    table = dict(given or {})
     if not names:
         raise InputError("name at least one contact law")
     if achieving is not None:
@@ -162,7 +163,8 @@ def _tuned(case: Case, table: Mapping[str, Any], parameter: str, achieving: floa
     """Return a case with the free parameter of its law tuned to a restitution at the
     speed of the first impact.
     """
-    law, speed = contact_laws_of(case)[0], touch_speed(case)
+    law = contact_laws_of(case)[0]
+    speed = touch_speed(case)
     tuned = law_achieving(law, achieving, contact_pair(case).effective_mass, speed)
     return case_of({**table, "contact": {**table["contact"], parameter: getattr(tuned, parameter)}})
 

@@ -12,8 +12,8 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.rigid_bodies import rigid_plate
-from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.reader import case_of
+from vibroimpact.cases.rigid.pair import contact_pair
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Level, Line, Mark, Points
@@ -141,17 +141,17 @@ def _example(law: type[ContactLaw]) -> _Example:
         return _Example("Steel sphere, radius 25 mm, on a steel plate", pair, law.example(pair))
     if getattr(law, "contact_end", "") == "pull-off":
         pair = _pair_of(1e-4, "rock-paper", "steel-paper")
-        one = law.example(pair)
+        example = law.example(pair)
         # contacts of the smaller sphere are shorter in proportion
-        if hasattr(one, "dissipation_time"):
-            one = one.changed(
+        if hasattr(example, "dissipation_time"):
+            example = example.changed(
                 {
-                    "dissipation_time": one.dissipation_time
+                    "dissipation_time": example.dissipation_time
                     * pair.effective_radius
                     / paper_pair().effective_radius
                 }
             )
-        return _Example("Rock sphere, radius 0.1 mm, on a steel plate", pair, one)
+        return _Example("Rock sphere, radius 0.1 mm, on a steel plate", pair, example)
     pair = paper_pair()
     return _Example("Rock sphere, radius 25 mm, on a steel plate", pair, law.example(pair))
 
@@ -165,9 +165,11 @@ def _typical_speeds(law: type[ContactLaw], restitution: Floats) -> tuple[float, 
     """Return three approach speeds [m/s] for the force curves, from the sticking or the
     yield speed on where there is one.
     """
-    first, factors = 1.0, (1.0, 3.0, 9.0)
+    first = 1.0
+    factors = (1.0, 3.0, 9.0)
     if getattr(law, "contact_end", "") == "pull-off" and np.any(restitution > 0.0):
-        first, factors = _SPEEDS[np.argmax(restitution > 0.0)], (1.0, 2.0, 4.0)
+        first = _SPEEDS[np.argmax(restitution > 0.0)]
+        factors = (1.0, 2.0, 4.0)
     elif restitution[0] > _ELASTIC > restitution[-1]:
         first = _SPEEDS[np.argmin(restitution > _ELASTIC) - 1]
     return tuple(float(f"{factor * first:.2g}") for factor in factors)
@@ -209,7 +211,8 @@ def _loop(example: _Example, speed: float) -> tuple[Floats, Floats]:
     part = response.at(
         duration * 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, _POINTS))) * (1.0 - 1e-12)
     )
-    indentation, force = part["indentation_m"], part["force_N"]
+    indentation = part["indentation_m"]
+    force = part["force_N"]
     return np.concatenate([indentation[:1], indentation, indentation[-1:]]), np.concatenate(
         [[0.0], force, [0.0]]
     )

@@ -48,7 +48,7 @@ def law_document(law: type[ContactLaw | FrictionLaw]) -> dict[str, Any]:
         **asdict(text),
         "title": plain_paragraph(text.title),
         **{
-            part: [plain_paragraph(one) for one in getattr(text, part)]
+            part: [plain_paragraph(paragraph) for paragraph in getattr(text, part)]
             for part in ("body", "notes", "references", "raises")
         },
         "parameters": _parameters(text.parameters, numbers),
@@ -68,9 +68,9 @@ def _parameters(
     """
     return [
         {
-            **asdict(one),
-            "meaning": plain_paragraph(one.meaning),
-            "default": numbers.get(one.name, one.default),
+            **asdict(parameter),
+            "meaning": plain_paragraph(parameter.meaning),
+            "default": numbers.get(parameter.name, parameter.default),
         }
-        for one in parameters
+        for parameter in parameters
     ]

@@ -22,7 +22,8 @@ from vibroimpact.law_sheets.text import (
 )
 from vibroimpact.report.markdown_table import markdown_table
 
-BEGIN, END = "<!-- laws: begin (written by make docs) -->", "<!-- laws: end -->"
+BEGIN = "<!-- laws: begin (written by make docs) -->"
+END = "<!-- laws: end -->"
 """The marker lines before and after the table in laws.md."""
 
 _ENDS = {

@@ -52,8 +52,8 @@ def law_table(width: int) -> RenderableType:
     headings = ("law", "loss parameter", "end of contact", "tension", "source")
     table = TerminalTable(
         [
-            TerminalColumn(words, cells, text=True)
-            for words, cells in zip(headings, zip(*rows, strict=True), strict=True)
+            TerminalColumn(phrase, cells, text=True)
+            for phrase, cells in zip(headings, zip(*rows, strict=True), strict=True)
         ],
         indent=0,
     )
@@ -74,8 +74,8 @@ def _friction_table(width: int) -> RenderableType:
     cells = zip(*rows, strict=True)
     return TerminalTable(
         [
-            TerminalColumn(words, list(column), text=True)
-            for words, column in zip(headings, cells, strict=True)
+            TerminalColumn(phrase, list(column), text=True)
+            for phrase, column in zip(headings, cells, strict=True)
         ],
         indent=0,
     )
@@ -126,12 +126,12 @@ def law_sheet(name: str) -> RenderableType:
     return Group(*parts)
 
 
-def _heading(words: str) -> list[RenderableType]:
-    return [Text(), Text(words, style="bold")]
+def _heading(phrase: str) -> list[RenderableType]:
+    return [Text(), Text(phrase, style="bold")]
 
 
-def _indented(words: str) -> RenderableType:
-    return Padding(Text(words), (0, 0, 0, 2), expand=False)
+def _indented(phrase: str) -> RenderableType:
+    return Padding(Text(phrase), (0, 0, 0, 2), expand=False)
 
 
 def _prose(paragraphs: Iterable[str]) -> list[RenderableType]:

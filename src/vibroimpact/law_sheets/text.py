@@ -8,8 +8,8 @@ from dataclasses import MISSING, Field, dataclass, fields
 from functools import cache
 from typing import Any
 
-from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.reader import load_case
+from vibroimpact.cases.rigid.pair import contact_pair
 from vibroimpact.contact.docstring import docstring_sections
 from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw, default_origin
@@ -104,11 +104,14 @@ def law_text(law: type[ContactLaw | FrictionLaw]) -> LawText:
     """
     sections = docstring_sections(law.__doc__ or law.name)
     title, *body = _paragraphs(sections[""])
-    end, tension, persistence = "", "", ""
+    end = ""
+    tension = ""
+    persistence = ""
     if issubclass(law, InstantaneousLaw):
         end = "The contact is instantaneous: it has no duration and no force."
     if issubclass(law, CompliantLaw):
-        end, tension = _ENDS[law.contact_end], _TENSION[law.tension]
+        end = _ENDS[law.contact_end]
+        tension = _TENSION[law.tension]
         if any(item.metadata["memory"] for item in fields(law)):
             persistence = (
                 "The state is kept: the next impact on the same spot starts from it."
@@ -169,13 +172,13 @@ def asked_and_achieved(law: type[ContactLaw]) -> list[tuple[float, float]]:
     if "restitution" not in {item.name for item in fields(law)}:
         return []
     pair = paper_pair()
-    one = law.example(pair)
+    example = law.example(pair)
     return [
         (
             asked,
             float(
                 achieved_restitution(
-                    one.changed({"restitution": asked}), pair.effective_mass, SPEED
+                    example.changed({"restitution": asked}), pair.effective_mass, SPEED
                 )
             ),
         )

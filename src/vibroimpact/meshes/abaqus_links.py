@@ -11,7 +11,7 @@ from vibroimpact.meshes.parsed_mesh import Parts
 from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import TextLine, parse_integer, parse_real
 from vibroimpact.meshes.tied_surfaces import MeshSurface, Tie
-from vibroimpact.structures.joints import AXES
+from vibroimpact.structures.finite_elements.joints import AXES
 
 _ALL = tuple(range(COMPONENTS))
 _DISPLACEMENTS = tuple(range(AXES))

@@ -11,7 +11,7 @@ from dataclasses import replace
 from vibroimpact.meshes.abaqus_blocks import Block
 from vibroimpact.meshes.nastran_cards import nastran_real
 from vibroimpact.meshes.text_files import TextLine
-from vibroimpact.structures.stated_materials import StatedMaterial
+from vibroimpact.structures.finite_elements.stated_materials import StatedMaterial
 
 _OTHERS = {
     "HYPERELASTIC": "hyperelastic",

@@ -13,9 +13,9 @@ import numpy as np
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
-from vibroimpact.structures.element_kinds import PLATE_ORDER
-from vibroimpact.structures.joints import AXES
-from vibroimpact.structures.mesh import ElementBlock, Mesh
+from vibroimpact.structures.finite_elements.element_kinds import PLATE_ORDER
+from vibroimpact.structures.finite_elements.joints import AXES
+from vibroimpact.structures.finite_elements.mesh import ElementBlock, Mesh
 
 # local node order of a 9-node quadrilateral on a 3 x 3 lattice, as (row, column): corners, mid-edge
 # nodes, centre

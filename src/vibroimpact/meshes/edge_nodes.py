@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
-from vibroimpact.structures.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.finite_elements.element_kinds import ELEMENT_KINDS
 
 OMITTED = -1
 """Stands for the number of a node that is left out."""

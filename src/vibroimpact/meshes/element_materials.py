@@ -15,8 +15,8 @@ import numpy as np
 from vibroimpact.arrays import Integers
 from vibroimpact.errors import InputError, did_you_mean, listed
 from vibroimpact.materials import Material
-from vibroimpact.structures.mesh import Mesh
-from vibroimpact.structures.stated_materials import StatedMaterial, StatedMaterials
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.stated_materials import StatedMaterial, StatedMaterials
 
 REMEDY = (
     'give mesh.materials = { name = "steel", ... }, with the names of materials or element sets '
@@ -94,7 +94,7 @@ def with_element_materials(
 
     Examples
     --------
-    >>> from vibroimpact.structures.lattice import box_mesh
+    >>> from vibroimpact.structures.finite_elements.lattice import box_mesh
     >>> stated = (
     ...     StatedMaterial("MID1", 7.85e-9, 2.1e5, 0.3),
     ...     StatedMaterial("MID2", 1.1e-9, 10.0, 0.45),

@@ -16,7 +16,7 @@ from vibroimpact.files.reading import FileKind, beginning, with_path
 from vibroimpact.meshes.geometry_process import MARK
 from vibroimpact.meshes.read_gmsh import read_gmsh
 from vibroimpact.quoting import shortened
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
 
 STEP = (".step", ".stp")
 BREP = (".brep",)

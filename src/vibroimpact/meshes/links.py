@@ -11,8 +11,8 @@ import numpy as np
 
 from vibroimpact.arrays import Bools, Floats, Integers
 from vibroimpact.meshes.text_files import TextLine
-from vibroimpact.structures.joints import AXES, Joints, Terms, solved_joints
-from vibroimpact.structures.structure import rotation_columns
+from vibroimpact.structures.finite_elements.joints import AXES, Joints, Terms, solved_joints
+from vibroimpact.structures.finite_elements.structure import rotation_columns
 
 COMPONENTS = 6
 """Of the motion of a node: three displacements, and three rotations."""

@@ -15,9 +15,9 @@ from vibroimpact.meshes.geometry import BREP, STEP, mesh_geometry
 from vibroimpact.meshes.read_abaqus import read_abaqus
 from vibroimpact.meshes.read_gmsh import read_gmsh
 from vibroimpact.meshes.read_nastran import read_nastran
-from vibroimpact.structures.mesh import Mesh
-from vibroimpact.structures.parts import part_at
-from vibroimpact.structures.surface import Side, Spot
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.parts import part_at
+from vibroimpact.structures.finite_elements.surface import Side, Spot
 
 READERS: Mapping[str, Callable[[str | PathLike[str]], Mesh]] = {
     ".bdf": read_nastran,

@@ -12,7 +12,7 @@ from vibroimpact.meshes.links import COMPONENTS, Distance, Equation, Link, Mean,
 from vibroimpact.meshes.nastran_cards import Card, nastran_real
 from vibroimpact.meshes.parsed_mesh import Parts
 from vibroimpact.meshes.text_files import TextLine, parse_integer
-from vibroimpact.structures.joints import AXES
+from vibroimpact.structures.finite_elements.joints import AXES
 
 _ALL = tuple(range(COMPONENTS))
 _RIGID_ELEMENTS = ("RBE1", "RBE2", "RBE3", "RBAR", "RROD", "RTRPLT")

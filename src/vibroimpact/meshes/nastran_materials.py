@@ -13,7 +13,7 @@ from vibroimpact.meshes.nastran_cards import Card, nastran_real
 from vibroimpact.meshes.parsed_mesh import FLUID
 from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import TextLine, parse_integer
-from vibroimpact.structures.stated_materials import StatedMaterial
+from vibroimpact.structures.finite_elements.stated_materials import StatedMaterial
 
 _OTHERS = {
     "MAT9": "anisotropic",

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.arrays import Integers
-from vibroimpact.structures.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.finite_elements.element_kinds import ELEMENT_KINDS
 
 _HEX_BOTTOM = "01 12 23 30"
 _HEX_TOP = "45 56 67 74"

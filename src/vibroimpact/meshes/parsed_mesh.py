@@ -18,12 +18,12 @@ from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import TextLine
 from vibroimpact.meshes.tied_surfaces import MeshSurface, Tie, tied_nodes
 from vibroimpact.quoting import quoted, shortened
-from vibroimpact.structures.element_kinds import ELEMENT_KINDS
-from vibroimpact.structures.geometry import renumbered_by_volume
-from vibroimpact.structures.joints import AXES
-from vibroimpact.structures.mesh import ElementBlock, Mesh
-from vibroimpact.structures.stated_materials import StatedMaterial, StatedMaterials
-from vibroimpact.structures.surface import Faces
+from vibroimpact.structures.finite_elements.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.finite_elements.geometry import renumbered_by_volume
+from vibroimpact.structures.finite_elements.joints import AXES
+from vibroimpact.structures.finite_elements.mesh import ElementBlock, Mesh
+from vibroimpact.structures.finite_elements.stated_materials import StatedMaterial, StatedMaterials
+from vibroimpact.structures.finite_elements.surface import Faces
 
 LARGEST_COORDINATE = 1e15
 MOST_MEMBERS = 10_000_000

@@ -23,8 +23,8 @@ from vibroimpact.meshes.text_files import (
     read_lines_with_includes,
 )
 from vibroimpact.quoting import quoted
-from vibroimpact.structures.element_kinds import ELEMENT_KINDS
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.finite_elements.mesh import Mesh
 
 _KINDS = {
     "4": "tet4",

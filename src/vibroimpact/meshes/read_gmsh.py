@@ -13,8 +13,8 @@ from vibroimpact.meshes.node_order import GMSH
 from vibroimpact.meshes.parsed_mesh import Parts
 from vibroimpact.meshes.text_files import MESH, TextLine, parse_integer, parse_real, read_lines
 from vibroimpact.quoting import quoted
-from vibroimpact.structures.element_kinds import ELEMENT_KINDS
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.finite_elements.mesh import Mesh
 
 _SOLIDS = {
     4: "tet4",

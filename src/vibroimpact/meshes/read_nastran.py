@@ -21,7 +21,7 @@ from vibroimpact.meshes.parsed_mesh import Parts
 from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import TextLine, parse_integer, read_lines_with_includes
 from vibroimpact.quoting import quoted
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
 
 _KINDS = {
     "CTETRA": {4: "tet4", 10: "tet10"},

@@ -15,10 +15,10 @@ from vibroimpact.meshes.links import Equation
 from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import TextLine
 from vibroimpact.quoting import quoted
-from vibroimpact.structures.joints import AXES
-from vibroimpact.structures.mesh import ElementBlock, Mesh
-from vibroimpact.structures.nearest_face import NearestPlace, nearest_places
-from vibroimpact.structures.surface import Faces, outer_faces
+from vibroimpact.structures.finite_elements.joints import AXES
+from vibroimpact.structures.finite_elements.mesh import ElementBlock, Mesh
+from vibroimpact.structures.finite_elements.nearest_face import NearestPlace, nearest_places
+from vibroimpact.structures.finite_elements.surface import Faces, outer_faces
 
 # reach over the mean length of the edges of the faces, where a file gives none, as in Abaqus
 _REACH = 0.05

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from vibroimpact.errors import InputError
 from vibroimpact.meshes.write_vtu import cells_of, checked_values, grid_text, vtu_text
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
 
 
 def write_vtu_series(
@@ -54,7 +54,7 @@ def write_vtu_series(
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
-    >>> from vibroimpact.structures.mesh import ElementBlock
+    >>> from vibroimpact.structures.finite_elements.mesh import ElementBlock
     >>> tet = Mesh(np.eye(4, 3), (ElementBlock("tet4", np.array([[3, 0, 1, 2]])),))
     >>> with TemporaryDirectory() as folder:
     ...     files = write_vtu_series(

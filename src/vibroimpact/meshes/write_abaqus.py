@@ -11,7 +11,7 @@ from vibroimpact.files.atomic_write import write_text_file
 from vibroimpact.files.plain_names import one_line
 from vibroimpact.materials import Material
 from vibroimpact.meshes.deck_mesh import DeckMesh, check_shell_thickness, deck_mesh
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
 
 _TYPES = {
     "tet4": "C3D4",
@@ -60,7 +60,7 @@ def write_abaqus(
     >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
     >>> import numpy as np
-    >>> from vibroimpact.structures.mesh import ElementBlock
+    >>> from vibroimpact.structures.finite_elements.mesh import ElementBlock
     >>> tet = Mesh(np.eye(4, 3), (ElementBlock("tet4", np.array([[3, 0, 1, 2]])),))
     >>> with TemporaryDirectory() as folder:
     ...     write_abaqus(tet, Path(folder, "tet.inp"))

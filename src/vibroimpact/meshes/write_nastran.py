@@ -13,7 +13,7 @@ from vibroimpact.files.plain_names import one_line
 from vibroimpact.materials import Material
 from vibroimpact.meshes.deck_mesh import DeckMesh, check_shell_thickness, deck_mesh
 from vibroimpact.meshes.node_order import NASTRAN, from_ours
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
 
 _CARDS = {
     "tet4": "CTETRA",
@@ -70,7 +70,7 @@ def write_nastran(
     --------
     >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
-    >>> from vibroimpact.structures.mesh import ElementBlock
+    >>> from vibroimpact.structures.finite_elements.mesh import ElementBlock
     >>> tet = Mesh(np.eye(4, 3), (ElementBlock("tet4", np.array([[3, 0, 1, 2]])),))
     >>> with TemporaryDirectory() as folder:
     ...     write_nastran(tet, Path(folder, "tet.bdf"))

@@ -14,7 +14,7 @@ from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import write_text_file
 from vibroimpact.meshes.deck_mesh import nine_node_shells
-from vibroimpact.structures.mesh import ElementBlock, Mesh
+from vibroimpact.structures.finite_elements.mesh import ElementBlock, Mesh
 
 _CELLS = {
     "tet4": 10,
@@ -65,7 +65,7 @@ def write_vtu(
     --------
     >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
-    >>> from vibroimpact.structures.mesh import ElementBlock
+    >>> from vibroimpact.structures.finite_elements.mesh import ElementBlock
     >>> tet = Mesh(np.eye(4, 3), (ElementBlock("tet4", np.array([[3, 0, 1, 2]])),))
     >>> with TemporaryDirectory() as folder:
     ...     write_vtu(tet, Path(folder, "tet.vtu"), {"displacement_m": np.zeros((4, 3))})

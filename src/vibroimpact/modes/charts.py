@@ -15,11 +15,13 @@ from vibroimpact.modes.solid_shapes import solid_panels
 from vibroimpact.structures.modal_model import ModalModel
 from vibroimpact.units.display import brief
 
-MOST_SHAPES, _COLUMNS = 12, 4
+MOST_SHAPES = 12
+_COLUMNS = 4
 _FLAT = 0.25
 """Thickness over width below which a body is drawn as a plate."""
 
-_WIDTH, _TITLE = 1.9, 0.3
+_WIDTH = 1.9
+_TITLE = 0.3
 """Width of a shape, and height of its title [in]."""
 
 
@@ -67,10 +69,12 @@ def is_plate(model: ModalModel) -> bool:
 
 
 def _chart(name: str, body: BodyModes) -> Chart:
-    model, number = body.model, min(MOST_SHAPES, len(body.model.frequencies))
+    model = body.model
+    number = min(MOST_SHAPES, len(body.model.frequencies))
     flat = is_plate(model)
     panels = plate_panels(body, number) if flat else solid_panels(model, number)
-    number, extent = len(panels), model.mesh.extent
+    number = len(panels)
+    extent = model.mesh.extent
     if flat:
         size = f"{brief(extent[0], 'm')} \u00d7 {brief(extent[1], 'm')}"
         meaning = "Red is up, blue is down, and the thick line is at rest."

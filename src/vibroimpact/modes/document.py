@@ -13,8 +13,8 @@ from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.cases.elastic.modes import BodyModes, Modes
 from vibroimpact.results.peaks import known_errors
+from vibroimpact.structures.finite_elements.stated_materials import contradictions
 from vibroimpact.structures.recipe import model_key
-from vibroimpact.structures.stated_materials import contradictions
 from vibroimpact.structures.store import has_model
 
 MODE_COLUMNS = (
@@ -49,7 +49,7 @@ def modes_document(modes: Modes, summary: Mapping[str, Any]) -> dict[str, Any]:
     }
     return {
         **summary,
-        "modes": {name: {**one, **tables[name]} for name, one in summary["modes"].items()},
+        "modes": {name: {**entry, **tables[name]} for name, entry in summary["modes"].items()},
     }
 
 

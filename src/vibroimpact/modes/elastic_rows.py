@@ -20,7 +20,8 @@ def elastic_rows(case: Case) -> list[tuple[str, str]]:
     rows: list[tuple[str, str]] = []
     meshes = mesh_facts(case)
     for name, body in elastic_bodies(case).items():
-        mesh, reduction = meshes[name], body.recipe.reduction
+        mesh = meshes[name]
+        reduction = body.recipe.reduction
         kept = (
             f"{reduction.modes} modes"
             if reduction.modes

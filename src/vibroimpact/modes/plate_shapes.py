@@ -17,9 +17,9 @@ from vibroimpact.modes.supports import support_outlines
 from vibroimpact.modes.titles import mode_title
 from vibroimpact.quoting import visible
 from vibroimpact.results.surface_grid import SurfaceGrid, surface_grid
-from vibroimpact.structures.outline import outline
+from vibroimpact.structures.finite_elements.outline import outline
+from vibroimpact.structures.finite_elements.surface import place_of
 from vibroimpact.structures.supports.edge import Edge
-from vibroimpact.structures.surface import place_of
 
 _POINTS = 12_000
 """Approximate number of grid points of a map: nodal lines between them are straight."""

@@ -13,8 +13,8 @@ from vibroimpact.charts.chart import Panel
 from vibroimpact.charts.marks import Facets, Label, Line, Mark
 from vibroimpact.modes.titles import mode_title
 from vibroimpact.report.projection import TILT, TURN, project
+from vibroimpact.structures.finite_elements.surface import outer_faces
 from vibroimpact.structures.modal_model import ModalModel
-from vibroimpact.structures.surface import outer_faces
 
 _FACETS = 3000
 """Facets of the surface, if its faces are not more already."""

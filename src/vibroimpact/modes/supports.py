@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from vibroimpact.arrays import Floats
 from vibroimpact.charts.outlines import THIN, disc, rectangle, strip
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
 from vibroimpact.structures.supports.edge import Edge
 from vibroimpact.structures.supports.node_set import NodeSet
 from vibroimpact.structures.supports.patch import RectangularPatch
@@ -19,7 +19,7 @@ def support_outlines(supports: Sequence[Support], mesh: Mesh) -> list[tuple[Floa
 
     Examples
     --------
-    >>> from vibroimpact.structures.plate_mesh import plate_mesh
+    >>> from vibroimpact.structures.finite_elements.plate_mesh import plate_mesh
     >>> ((x, y),) = support_outlines([Edge("x-min", "clamped")], plate_mesh((0.5, 0.4), 0.2))
     >>> x.round(3).tolist(), y.tolist()
     ([-0.25, -0.244, -0.244, -0.25], [-0.2, -0.2, 0.2, 0.2])

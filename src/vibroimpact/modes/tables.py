@@ -16,38 +16,39 @@ ROWS = 20
 _UNKNOWN = "not known"
 
 
-def body_facts(found: BodyModes) -> list[tuple[str, str]]:
+def body_facts(modes: BodyModes) -> list[tuple[str, str]]:
     """Return mass and mesh of a body, how it is held, its rigid motions and its damping:
     what each is, and words.
     """
-    properties, facts = found.model.properties, found.model.facts
+    properties = modes.model.properties
+    facts = modes.model.facts
     rows = [
         (
             "mesh",
             f"{properties.mass:.6g} kg, {facts['elements']}, {facts['degrees of freedom']} "
             "degrees of freedom",
         ),
-        ("held by", supports_text(found.body)),
-        ("rigid motions", str(len(found.model.rigid_coefficients))),
-        ("damping", found.body.damping.description),
+        ("held by", supports_text(modes.body)),
+        ("rigid motions", str(len(modes.model.rigid_coefficients))),
+        ("damping", modes.body.damping.description),
     ]
     return rows + [
         (what, facts[what]) for what in ("materials", "left out of the file") if what in facts
     ]
 
 
-def mode_table(found: BodyModes) -> Table:
+def mode_table(modes: BodyModes) -> Table:
     """Return the table of the lowest modes, and of the highest one if some are left out;
     without columns that say nothing.
     """
-    basis = found.basis
+    basis = modes.basis
     number = len(basis.frequencies)
     shown = list(range(min(ROWS, number))) + ([number - 1] if number > ROWS else [])
     left_out = number - len(shown)
     effective = basis.participation[:, 2] ** 2
-    errors = _error_texts(found.model.frequency_errors[shown])
+    errors = _error_texts(modes.model.frequency_errors[shown])
     shapes = _fixed_texts(basis.contact[shown], float(np.abs(basis.contact).max()))
-    masses = _fixed_texts(effective[shown], found.model.properties.mass)
+    masses = _fixed_texts(effective[shown], modes.model.properties.mass)
     columns = [
         Column("mode", [str(mode + 1) for mode in shown]),
         Column("frequency", column_texts(basis.frequencies[shown], 6), "Hz"),

@@ -39,13 +39,13 @@ def _variable_damping(runs: Runs) -> list[tuple[str, ...]]:
         }
         constant = largest_errors["constant"]
         variable = largest_errors["variable"]
-        words = (
+        phrase = (
             f"(1) With variable damping the largest error of the {quantity} is smaller than "
             "with constant damping"
         )
         cells.append(
             (
-                words,
+                phrase,
                 "IMPACT",
                 holds_text(variable < constant),
                 f"{variable:.3f} % instead of {constant:.3f} %",
@@ -77,13 +77,13 @@ def _elastic_sphere(runs: Runs, treatment: str) -> tuple[str, ...]:
     rigid = runs.response("type1-variable").impacts
     rigid_force = float(rigid["max_force_N"][0])
     rigid_height = float(rigid["rebound_height_m"][0])
-    words = "(3) An elastic sphere is hit with less force, and rebounds lower, than a rigid one"
+    phrase = "(3) An elastic sphere is hit with less force, and rebounds lower, than a rigid one"
     numbers = (
         f"{elastic_force:.0f} instead of {rigid_force:.0f} N, {elastic_height:.3f} instead of "
         f"{rigid_height:.3f} m"
     )
     holds = elastic_force < rigid_force and elastic_height < rigid_height
-    return words, treatment, holds_text(holds), numbers
+    return phrase, treatment, holds_text(holds), numbers
 
 
 _ELASTIC_PLATE = (
@@ -135,7 +135,7 @@ def _energy_of_the_plate(runs: Runs, treatment: str) -> tuple[str, ...]:
         * float((history["plate_kinetic_J"] + history["plate_strain_J"]).max())
         / energy_released(response)
     )
-    words = (
+    phrase = (
         f"(6) The energy of the plate can't be neglected: more than {least.text} % of the "
         "energy released"
     )
@@ -143,7 +143,7 @@ def _energy_of_the_plate(runs: Runs, treatment: str) -> tuple[str, ...]:
         f"{both:.1f} % if the largest kinetic and strain energy are added, at most "
         f"{at_once:.1f} % at one time"
     )
-    return words, treatment, holds_text(both > least.value), numbers
+    return phrase, treatment, holds_text(both > least.value), numbers
 
 
 def _consumed(runs: Runs, treatment: str) -> tuple[str, ...]:
@@ -158,9 +158,9 @@ def _consumed(runs: Runs, treatment: str) -> tuple[str, ...]:
         history[name] for name in ("contact_dissipated_J", "sphere_damping_J", "plate_damping_J")
     )
     first, second = (100.0 * np.asarray(dissipated) / put_in).tolist()
-    words = "(6) Most of the energy is consumed in the impact of elastic bodies"
+    phrase = "(6) Most of the energy is consumed in the impact of elastic bodies"
     return (
-        words,
+        phrase,
         treatment,
         holds_text(first > 50.0),
         f"{first:.0f} % dissipated by the first separation, {second:.0f} % by the second touch",

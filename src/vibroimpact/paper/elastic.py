@@ -102,10 +102,10 @@ def _type_1(runs: Runs) -> list[ComparedValue]:
     spacing = spacing_bound(runs)
     high = float(impacts["max_force_N"][0])
     low = contact_pulses(runs)["variable", "force", 1].lowest(spacing)
-    words = f"read off samples {1e6 * spacing:.0f} µs apart the peak is"
-    force = Explanation(f"{words} {low:.1f} to {high:.1f} N", low, high)
+    phrase = f"read off samples {1e6 * spacing:.0f} µs apart the peak is"
+    force = Explanation(f"{phrase} {low:.1f} to {high:.1f} N", low, high)
     least, largest = (value / mass - gravity for value in (low, high))
-    acceleration = Explanation(f"{words} {least:.0f} to {largest:.0f} m/s²", least, largest)
+    acceleration = Explanation(f"{phrase} {least:.0f} to {largest:.0f} m/s²", least, largest)
     return [
         ComparedValue(printed("type1.max_force"), high, by="IMPACT", explanations=(force,)),
         ComparedValue(
@@ -161,10 +161,10 @@ def _statements(runs: Runs) -> TextTable:
         "The first rebound is higher in Type 2 than in Type 3",
         "From the second impact on the force is larger in Type 2 than in Type 3",
     )
-    found = [_statements_under(runs, treatment) for treatment in TREATMENTS]
+    statements = [_statements_under(runs, treatment) for treatment in TREATMENTS]
     return TextTable(
         ("Statement", *TREATMENTS),
-        tuple(zip(said, *found, strict=True)),
+        tuple(zip(said, *statements, strict=True)),
         "Qualitative statements of the paper",
     )
 
@@ -178,8 +178,8 @@ def _statements_under(runs: Runs, treatment: str) -> list[str]:
     height = two["rebound_height_m"][0]
     lower = three["rebound_height_m"][0]
     forces = [
-        f"{one:.0f} and {another:.0f} N"
-        for one, another in zip(two["max_force_N"], three["max_force_N"], strict=True)
+        f"{force:.0f} and {another:.0f} N"
+        for force, another in zip(two["max_force_N"], three["max_force_N"], strict=True)
     ]
     more = two["max_force_N"] - three["max_force_N"]
     return [
@@ -269,11 +269,11 @@ def _at_touch(runs: Runs, kind: int) -> ComparedValue:
     least, most = (weight * gravity * fall for weight in mesh_mass(kind, gravity))
     most *= 1.0 + sag / fall
     lower = f", and a static deflection of the plate by up to {1e6 * sag:.1f} µm" if sag else ""
-    words = (
+    phrase = (
         f"with the mass of the mesh that the printed force and acceleration imply{lower}: "
         f"{least:.6f} to {most:.6f} J"
     )
-    explanation = Explanation(words, least, most)
+    explanation = Explanation(phrase, least, most)
     by = f"m g times the fall of {fall:g} m"
     return ComparedValue(
         printed(f"type{kind}.energy_at_touch"),
@@ -384,13 +384,13 @@ def section_5_3(runs: Runs) -> ReportSection:
     )
     rows += _plate_percentages()
     rows += values_by_treatment(runs, 3, printed("plate.energy_part"), plate_energy_part)
-    table, words = _peak_decay(runs)
+    table, phrase = _peak_decay(runs)
     return ReportSection(
         "Section 5.3: the vibration of the plate",
         ("Peaks of the whole run, of the plate's centre of mass and of its energies.",),
         tuple(rows),
         (table,),
-        (words,),
+        (phrase,),
     )
 
 
@@ -441,12 +441,12 @@ def _peak_decay(runs: Runs) -> tuple[TextTable, str]:
     slowest = []
     for treatment in TREATMENTS:
         response = runs.treated(3, treatment)
-        left = {}
+        remaining = {}
         for name in ("displacement", "velocity", "acceleration"):
             peaks = after_each_impact(history_column(_PLATE_COLUMNS[name]))(response)
             cells.append((treatment, name, *(f"{100.0 * peak / peaks[0]:.2f}" for peak in peaks)))
-            left[name] = float(peaks[-1] / peaks[0])
-        slowest += [treatment] if left["acceleration"] == max(left.values()) else []
+            remaining[name] = float(peaks[-1] / peaks[0])
+        slowest += [treatment] if remaining["acceleration"] == max(remaining.values()) else []
     headers = (
         "Treatment",
         "Peak of the plate's centre of mass",
@@ -457,11 +457,11 @@ def _peak_decay(runs: Runs) -> tuple[TextTable, str]:
         if slowest
         else "this holds in none of the three treatments"
     )
-    words = (
+    phrase = (
         "The paper states that from impact to impact the acceleration of the plate's centre "
         "of mass decreases more slowly than its "
         f"displacement and velocity: {where}."
     )
     return TextTable(
         headers, tuple(cells), "Peaks after each impact, relative to those after the first"
-    ), words
+    ), phrase

@@ -24,7 +24,7 @@ from functools import cached_property
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.single_impacts import first_approach_speed
+from vibroimpact.calibration.fit.single_impacts import first_approach_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.roots import find_root
 from vibroimpact.dynamics.problem import Problem

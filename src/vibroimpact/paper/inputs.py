@@ -7,8 +7,8 @@ from __future__ import annotations
 from typing import Any
 
 from vibroimpact.cases.build import resolved_case
-from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.reader import load_case
+from vibroimpact.cases.rigid.pair import contact_pair
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.paper.printed import corrections, printed

@@ -172,7 +172,7 @@ def values_by_treatment(
     unresolved : tuple of two floats, optional
         Range of the value in unresolved runs of the superposed model.
     """
-    words = {
+    phrase = {
         "consistent": "elastic bodies with this contact law give another value, and "
         "no setting of this treatment that was tried keeps what is printed",
         "superposed": "the resolved superposed model gives another value, and "
@@ -191,7 +191,7 @@ def values_by_treatment(
         )
         inside = "lies in this range" if explanation.contains(value) else few
         steps = "in steps fitted to Type 2" if kind == 2 else "in steps found from Type 2"
-        words["superposed"] += (
+        phrase["superposed"] += (
             f". A hypothesis: unresolved, on a coarse mesh and {steps}, it gives {low:.4g} "
             f"to {high:.4g} {value.unit}, and the printed value {inside}"
         )
@@ -200,7 +200,7 @@ def values_by_treatment(
             value,
             measure(runs.treated(kind, treatment)),
             by=treatment,
-            otherwise=words[treatment],
+            otherwise=phrase[treatment],
             fitted=treatment == "identified" and value.name in FITTED,
             digits=MESH_DIGITS,
             made_by=kind_of(treatment),

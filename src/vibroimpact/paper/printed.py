@@ -119,7 +119,7 @@ def printed_values() -> Mapping[str, PrintedValue]:
     """Return all values of `printed.toml` by name; the items of a list are named
     `NAME.1`, `NAME.2`, ...
     """
-    found: dict[str, PrintedValue] = {}
+    values: dict[str, PrintedValue] = {}
     for entry in _library()["value"]:
         texts = entry["text"]
         for number, text in enumerate([texts] if isinstance(texts, str) else texts, start=1):
@@ -132,10 +132,10 @@ def printed_values() -> Mapping[str, PrintedValue]:
                     "text": text,
                 }
             )
-            if value.name in found:
+            if value.name in values:
                 raise ValueError(f"{value.name} is held twice")
-            found[value.name] = value
-    return found
+            values[value.name] = value
+    return values
 
 
 def printed(name: str) -> PrintedValue:

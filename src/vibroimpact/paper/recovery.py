@@ -105,8 +105,8 @@ def recover_parameters(runs: Runs) -> RecoveredParameters:
         penetration=penetration,
         worst=float(np.abs(fit.fun).max()),
         alone={
-            one.name: (_single_estimate(one, fit.x, 0), _single_estimate(one, fit.x, 1))
-            for one in evidence
+            source.name: (_single_estimate(source, fit.x, 0), _single_estimate(source, fit.x, 1))
+            for source in evidence
         },
         single=_is_unique(splines),
         as_printed=(
@@ -122,25 +122,27 @@ def recover_parameters(runs: Runs) -> RecoveredParameters:
     )
 
 
-def off_joint(found: RecoveredParameters, evidence: Evidence) -> float:
+def off_joint(recovered: RecoveredParameters, evidence: Evidence) -> float:
     """Return the distance of the joint estimate from a piece of evidence, in half-widths
     of its band: at most 1 inside the band.
     """
-    pairs = zip(found.alone[evidence.name], (found.restitution, found.penetration), strict=True)
+    pairs = zip(
+        recovered.alone[evidence.name], (recovered.restitution, recovered.penetration), strict=True
+    )
     return (
         max(alone.apart(joint.value) for alone, joint in pairs if alone is not None)
         / evidence.half_width
     )
 
 
-def penetration_bands(found: RecoveredParameters, penetration: float) -> tuple[bool, ...]:
+def penetration_bands(recovered: RecoveredParameters, penetration: float) -> tuple[bool, ...]:
     """Return whether a penetration [m] lies in the band of each piece of evidence that
     depends on the penetration alone.
     """
     return tuple(
-        penetration_alone.apart(penetration) <= one.half_width
-        for one, (restitution_alone, penetration_alone) in zip(
-            found.evidence, found.alone.values(), strict=True
+        penetration_alone.apart(penetration) <= source.half_width
+        for source, (restitution_alone, penetration_alone) in zip(
+            recovered.evidence, recovered.alone.values(), strict=True
         )
         if restitution_alone is None and penetration_alone is not None
     )
@@ -186,10 +188,10 @@ def _joint_fit(evidence: tuple[Evidence, ...]) -> tuple[tuple[Evidence, ...], Op
     the rounded values.
     """
     ranges = np.array([RESTITUTIONS, np.log10(PENETRATIONS)])
-    rounded = tuple(one for one in evidence if one.freedom is None)
+    rounded = tuple(source for source in evidence if source.freedom is None)
     fit = _fit(partial(_joint_residuals, rounded), ranges.mean(axis=1), tuple(ranges.T))
     for _ in range(_ROUNDS):
-        evidence = tuple(_with_scatter(one, fit.x) for one in evidence)
+        evidence = tuple(_with_scatter(source, fit.x) for source in evidence)
         previous = fit.x
         fit = _fit(partial(_joint_residuals, evidence), previous)
         if np.all(np.abs(fit.x - previous) < 1e-10):
@@ -206,24 +208,27 @@ def _fit(
 
 def _joint_residuals(evidence: tuple[Evidence, ...], at: Floats) -> Floats:
     """Return the standardised residuals of all evidence in the joint estimate."""
-    return np.concatenate([one.standardised(*at) for one in evidence if one.joint])
+    return np.concatenate([source.standardised(*at) for source in evidence if source.joint])
 
 
-def _with_scatter(one: Evidence, at: Floats) -> Evidence:
+def _with_scatter(evidence: Evidence, at: Floats) -> Evidence:
     """Return evidence with the standard deviation of its residuals at the current estimate."""
-    if one.freedom is None:
-        return one
-    return replace(one, deviation=math.sqrt(float(np.sum(one.residuals(*at) ** 2)) / one.freedom))
+    if evidence.freedom is None:
+        return evidence
+    return replace(
+        evidence,
+        deviation=math.sqrt(float(np.sum(evidence.residuals(*at) ** 2)) / evidence.freedom),
+    )
 
 
-def _single_estimate(one: Evidence, at: Floats, which: int) -> Estimate | None:
+def _single_estimate(evidence: Evidence, at: Floats, which: int) -> Estimate | None:
     """Return the estimate of one parameter from one piece of evidence, with the other
     parameter fixed.
     """
 
     def residuals(x: Floats) -> Floats:
         parameters = [x[0] if number == which else value for number, value in enumerate(at)]
-        return one.standardised(*parameters)
+        return evidence.standardised(*parameters)
 
     fit = _fit(residuals, at[which : which + 1])
     steepness = float(np.linalg.norm(fit.jac))
@@ -245,7 +250,7 @@ def _is_unique(splines: ImpactSplines) -> bool:
     """Return whether the first rebound rises with the penetration, and all of the theory
     with the restitution, over the search ranges.
     """
-    simulation, theory = (one["rebound_height_m"] for one in (splines.variable, splines.theory))
+    simulation, theory = (drops["rebound_height_m"] for drops in (splines.variable, splines.theory))
     return bool(
         np.all(np.diff(simulation(simulation.x)[:, 0]) > 0.0)
         and np.all(np.diff(theory(theory.x), axis=0) > 0.0)
@@ -260,7 +265,7 @@ def recovery_section(runs: Runs) -> ReportSection:
     runs : Runs
         The cases.
     """
-    found = recover_parameters(runs)
+    recovered = recover_parameters(runs)
     return ReportSection(
         title="The restitution and the full-damping penetration, from the paper's own numbers",
         paragraphs=(
@@ -279,11 +284,11 @@ def recovery_section(runs: Runs) -> ReportSection:
             "Table 2 are not used either: they are consistent with peaks read from samples, "
             "and missed peaks bias them.",
         ),
-        tables=(_implied_table(found), _coefficients_table(found)),
+        tables=(_implied_table(recovered), _coefficients_table(recovered)),
         conclusion=(
-            _joint_words(found),
-            _printed_words(found),
-            _round_value_words(found, runs),
+            _joint_words(recovered),
+            _printed_words(recovered),
+            _round_value_words(recovered, runs),
             "Established: with Lankarani and Nikravesh's law as the theory, and with the "
             "printed dampings in IMPACT clipped at zero, the "
             "printed numbers used here agree with these two values. A hypothesis: that the "
@@ -292,26 +297,26 @@ def recovery_section(runs: Runs) -> ReportSection:
     )
 
 
-def _implied_table(found: RecoveredParameters) -> TextTable:
+def _implied_table(recovered: RecoveredParameters) -> TextTable:
     """Return the table of the estimates from each piece of evidence, and of the joint estimate."""
     cells = []
-    for one in found.evidence:
-        restitution_alone, penetration_alone = found.alone[one.name]
-        known = "rounding" if one.freedom is None else "scatter"
+    for evidence in recovered.evidence:
+        restitution_alone, penetration_alone = recovered.alone[evidence.name]
+        known = "rounding" if evidence.freedom is None else "scatter"
         cells.append(
             (
-                one.name,
-                _estimate_text(restitution_alone, 1.0, one.half_width),
-                _estimate_text(penetration_alone, 1e3, one.half_width),
+                evidence.name,
+                _estimate_text(restitution_alone, 1.0, evidence.half_width),
+                _estimate_text(penetration_alone, 1e3, evidence.half_width),
                 known,
-                "yes" if one.joint else "no",
+                "yes" if evidence.joint else "no",
             )
         )
     cells.append(
         (
             "all used evidence, jointly",
-            _estimate_text(found.restitution),
-            _estimate_text(found.penetration, 1e3),
+            _estimate_text(recovered.restitution),
+            _estimate_text(recovered.penetration, 1e3),
             "standard deviations",
             "",
         )
@@ -323,7 +328,7 @@ def _implied_table(found: RecoveredParameters) -> TextTable:
     )
 
 
-def _coefficients_table(found: RecoveredParameters) -> TextTable:
+def _coefficients_table(recovered: RecoveredParameters) -> TextTable:
     """Return the table of the parabola through the printed dampings: as printed, and at
     the speeds of simulation and theory.
     """
@@ -332,7 +337,7 @@ def _coefficients_table(found: RecoveredParameters) -> TextTable:
             str(power),
             *(fixed(value, 5) for value in (printed(f"damping_function.{power + 1}").value, *both)),
         )
-        for power, both in enumerate(zip(*found.parabolas, strict=True))
+        for power, both in enumerate(zip(*recovered.parabolas, strict=True))
     )
     headers = (
         "power of v",
@@ -345,7 +350,7 @@ def _coefficients_table(found: RecoveredParameters) -> TextTable:
     )
 
 
-def _joint_words(found: RecoveredParameters) -> str:
+def _joint_words(recovered: RecoveredParameters) -> str:
     single = (
         f"There is no second solution between e_h = {RESTITUTIONS[0]:g} and "
         f"{RESTITUTIONS[1]:g}, d_max = {1e6 * PENETRATIONS[0]:g} "
@@ -353,18 +358,18 @@ def _joint_words(found: RecoveredParameters) -> str:
         "rebounds of the theory rise with e_h, all the way."
     )
     return (
-        f"Jointly e_h = {_estimate_text(found.restitution)} and d_max = "
-        f"{_estimate_text(found.penetration, 1e3)} mm; the largest "
-        f"residual is {found.worst:.1f} standard deviations. "
-        f"{single if found.single else 'A second solution is not excluded.'}"
+        f"Jointly e_h = {_estimate_text(recovered.restitution)} and d_max = "
+        f"{_estimate_text(recovered.penetration, 1e3)} mm; the largest "
+        f"residual is {recovered.worst:.1f} standard deviations. "
+        f"{single if recovered.single else 'A second solution is not excluded.'}"
     )
 
 
-def _printed_words(found: RecoveredParameters) -> str:
+def _printed_words(recovered: RecoveredParameters) -> str:
     given = printed("full_damping_penetration")
-    met = penetration_bands(found, given.value)
-    height, fourth, fifth = found.as_printed
-    words = (
+    met = penetration_bands(recovered, given.value)
+    height, fourth, fifth = recovered.as_printed
+    phrase = (
         f"The printed d_max, {given.text} m, is met by {sum(met) or 'none'} of the "
         f"{len(met)} pieces of evidence that depend on it alone. "
         f"With it the first rebound would be {fixed(height, 4)} m (printed "
@@ -375,17 +380,17 @@ def _printed_words(found: RecoveredParameters) -> str:
         f"{printed('constant.compression_error.5').text} %)."
     )
     if any(met):
-        return words
-    own = fixed(1e3 * found.penetration.value, 4)
+        return phrase
+    own = fixed(1e3 * recovered.penetration.value, 4)
     return (
-        f"{words} The paper's other numbers are those of {own} mm, so that it seems "
+        f"{phrase} The paper's other numbers are those of {own} mm, so that it seems "
         "to be a misprint."
     )
 
 
-def _round_value_words(found: RecoveredParameters, runs: Runs) -> str:
+def _round_value_words(recovered: RecoveredParameters, runs: Runs) -> str:
     """Return the sentence on the round values, which the shipped cases use."""
-    restitution, penetration = found.round_values
+    restitution, penetration = recovered.round_values
     rounded = {
         "type1.rebound_height": runs.response("type1-constant").impacts["rebound_height_m"][0],
         "constant.height_error.4": runs.below_theory("constant", "rebound_height_m")[3],
@@ -395,7 +400,7 @@ def _round_value_words(found: RecoveredParameters, runs: Runs) -> str:
         abs(float(value) - printed(name).value) / printed(name).half
         for name, value in rounded.items()
     )
-    off = (found.restitution.value - restitution) / found.restitution.deviation
+    off = (recovered.restitution.value - restitution) / recovered.restitution.deviation
     return (
         f"At the round values, e_h = {restitution:g} and d_max = {1e3 * penetration:g} mm, "
         f"the {len(rounded)} numbers with an uncertainty "

@@ -8,7 +8,7 @@ from functools import cached_property, lru_cache
 
 from vibroimpact.arrays import Array, Floats
 from vibroimpact.calibration.calibrate_case import calibrate_case, load_calibration
-from vibroimpact.calibration.calibration import Calibration
+from vibroimpact.calibration.contact_law.calibration import Calibration
 from vibroimpact.cases.reader import load_case
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
@@ -67,9 +67,9 @@ class Runs:
     @cached_property
     def calibration(self) -> Calibration:
         """The calibrated damping of Adams' IMPACT that reproduces each impact of the theory."""
-        found = calibrate_case(load_calibration("paper:calibration"))
-        assert isinstance(found, Calibration)
-        return found
+        calibration = calibrate_case(load_calibration("paper:calibration"))
+        assert isinstance(calibration, Calibration)
+        return calibration
 
     def below_theory(self, damping: str, column: str) -> Floats:
         """Return the shortfall of a column of the impact table against the theory [%],

@@ -96,7 +96,7 @@ def contact_pulses(runs: Runs) -> Mapping[tuple[str, str, int], ContactPulse]:
     """Return the pulses of the theory and the simulations, by run, quantity and impact
     number, counted from 1.
     """
-    found = {}
+    pulses = {}
     for name in ("theory", *DAMPINGS):
         response = runs.response(f"type1-{name}")
         for impact in IMPACTS:
@@ -107,10 +107,10 @@ def contact_pulses(runs: Runs) -> Mapping[tuple[str, str, int], ContactPulse]:
             history = response.at(touch + np.clip(times, 1e-9 * duration, (1.0 - 1e-9) * duration))
             for quantity, (column, largest, when) in QUANTITIES.items():
                 at = float(response.impacts[when][impact - 1]) - touch
-                found[name, quantity, impact] = _contact_pulse(
+                pulses[name, quantity, impact] = _contact_pulse(
                     times, history[column], at, float(response.impacts[largest][impact - 1])
                 )
-    return found
+    return pulses
 
 
 def error_range(
@@ -235,8 +235,8 @@ def sampling_section(runs: Runs) -> ReportSection:
             TextTable(
                 ("contact", "by the compression [µs]", "by the force [µs]", "apart at least [µs]"),
                 tuple(
-                    (f"{damping} damping, impact {impact}", *one.cells)
-                    for (damping, impact), one in instants.items()
+                    (f"{damping} damping, impact {impact}", *instant.cells)
+                    for (damping, impact), instant in instants.items()
                 ),
                 "When after first touch the printed errors were read, with "
                 "the exact peaks of the theory",
@@ -259,16 +259,16 @@ def _instants(runs: Runs) -> dict[tuple[str, int], ImpliedInstants]:
     """Return the instants at which each contact was sampled; an error that implies more
     than the peak has none.
     """
-    found = {}
+    instants = {}
     for contact in CONTACTS:
         both = [implied_instants(runs, quantity, *contact) for quantity in QUANTITIES]
-        distance = min(abs(one - other) for one in both[0] for other in both[1])
-        told = [
+        distance = min(abs(instant - other) for instant in both[0] for other in both[1])
+        cells = [
             MISSING if math.isnan(early) else f"{1e6 * early:.1f} or {1e6 * late:.1f}"
             for early, late in both
         ]
-        found[contact] = ImpliedInstants(distance, (*told, fixed(1e6 * distance, 1)))
-    return found
+        instants[contact] = ImpliedInstants(distance, (*cells, fixed(1e6 * distance, 1)))
+    return instants
 
 
 def _introduction(runs: Runs) -> tuple[str, ...]:
@@ -334,7 +334,7 @@ def _conclusion(runs: Runs, instants: tuple[ImpliedInstants, ...]) -> tuple[str,
     implied = printed("type1.max_force").value / (
         1.0 - 0.01 * printed("table2.force.constant.1").value
     )
-    distances = [one.distance for one in instants if not math.isnan(one.distance)]
+    distances = [instant.distance for instant in instants if not math.isnan(instant.distance)]
     return (
         f"{inside} of {len(_ERRORS)} printed errors lie within the range of samples "
         f"{1e6 * spacing:.0f} µs apart, which was found from the "

@@ -66,25 +66,25 @@ def section_3_2(runs: Runs) -> ReportSection:
 def _impacts(runs: Runs) -> TextTable:
     """Return the impact tables of the theory and of both simulations."""
     cells = []
-    for name, words in (
+    for name, phrase in (
         ("theory", "theory"),
         ("constant", "IMPACT, constant damping"),
         ("variable", "IMPACT, variable damping"),
     ):
         impacts = runs.response(f"type1-{name}").impacts
         for index in range(len(impacts["impact"])):
-            found = {column: float(values[index]) for column, values in impacts.items()}
+            row = {column: float(values[index]) for column, values in impacts.items()}
             cells.append(
                 (
-                    words,
+                    phrase,
                     str(index + 1),
-                    f"{found['time_s']:.5f}",
-                    f"{1e6 * found['duration_s']:.2f}",
-                    f"{found['approach_speed_m_s']:.5f}",
-                    f"{found['restitution_achieved']:.5f}",
-                    f"{1e6 * found['max_indentation_m']:.2f}",
-                    f"{found['max_force_N']:.2f}",
-                    f"{found['rebound_height_m']:.5f}",
+                    f"{row['time_s']:.5f}",
+                    f"{1e6 * row['duration_s']:.2f}",
+                    f"{row['approach_speed_m_s']:.5f}",
+                    f"{row['restitution_achieved']:.5f}",
+                    f"{1e6 * row['max_indentation_m']:.2f}",
+                    f"{row['max_force_N']:.2f}",
+                    f"{row['rebound_height_m']:.5f}",
                 )
             )
     headers = (

@@ -80,8 +80,8 @@ def unresolved_range(runs: Runs, kind: int, quantity: str) -> tuple[float, float
     quantity : str
         One of `implicit_euler.PEAKS`, "separation_speed_m_s" or "rebound_height_m".
     """
-    found = _fitted_step(runs, kind)[1][quantity]
-    return float(found.min()), float(found.max())
+    values = _fitted_step(runs, kind)[1][quantity]
+    return float(values.min()), float(values.max())
 
 
 def unresolved_section(runs: Runs) -> ReportSection:

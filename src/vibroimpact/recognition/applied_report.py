@@ -74,11 +74,11 @@ def _summary(recognised: Recognised) -> dict[str, Any]:
             "classes": {
                 name: {
                     "counted": counted,
-                    "fraction": one.value,
-                    "fraction_low": one.low,
-                    "fraction_high": one.high,
+                    "fraction": fraction.value,
+                    "fraction_low": fraction.low,
+                    "fraction_high": fraction.high,
                 }
-                for (name, one), counted in zip(
+                for (name, fraction), counted in zip(
                     recognised.fractions.items(), recognised.counted, strict=True
                 )
             },

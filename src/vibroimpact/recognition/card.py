@@ -18,8 +18,11 @@ CARD_FILE = FileKind(
 )
 """Requirements on a card."""
 
-MOST_CLASSES, MOST_FEATURES = 100, 20_000
-_MOST_DRAWS, _MOST_SAMPLES, _LONGEST = 100_000, 2**40, 200
+MOST_CLASSES = 100
+MOST_FEATURES = 20_000
+_MOST_DRAWS = 100_000
+_MOST_SAMPLES = 2**40
+_LONGEST = 200
 
 _NAMES = "a list of different names"
 

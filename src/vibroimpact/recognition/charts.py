@@ -20,12 +20,12 @@ _MOST_FEATURES = 20
 _LETTERS = 34
 
 
-def recognition_charts(found: Recognition) -> list[Chart]:
+def recognition_charts(recognition: Recognition) -> list[Chart]:
     """Return the charts of a recognition.
 
     Parameters
     ----------
-    found : Recognition
+    recognition : Recognition
         The recognition.
 
     Returns
@@ -44,38 +44,38 @@ def recognition_charts(found: Recognition) -> list[Chart]:
     ['scores', 'confusion']
     """
     makers = {"scores": _scores_chart, "confusion": _confusion_chart}
-    if found.unseen:
+    if recognition.unseen:
         makers["unseen"] = _unseen_chart
     makers |= {
         "robustness": _robustness_chart,
         "reliability": _reliability_chart,
         "importance": _importance_chart,
     }
-    if found.streams:
+    if recognition.streams:
         makers["fraction"] = _fraction_chart
-    return made_charts({name: partial(make, found) for name, make in makers.items()})
+    return made_charts({name: partial(make, recognition) for name, make in makers.items()})
 
 
-def _scores_chart(found: Recognition) -> Chart:
-    names = list(found.scores)[::-1]
+def _scores_chart(recognition: Recognition) -> Chart:
+    names = list(recognition.scores)[::-1]
     places = np.arange(float(len(names)))
     marks: list[Mark] = [
-        _lying(places + side, [scores[name].error for name in names], words, role, names)
-        for side, scores, words, role in (
-            (0.18, found.scores, f"grouped by {found.group}", "detail"),
-            (-0.18, found.random, "split at random", "pale"),
+        _lying(places + side, [scores[name].error for name in names], phrase, role, names)
+        for side, scores, phrase, role in (
+            (0.18, recognition.scores, f"grouped by {recognition.group}", "detail"),
+            (-0.18, recognition.random, "split at random", "pale"),
         )
     ]
-    if found.bayes_error is not None:
-        marks.append(Level(found.bayes_error, "Bayes error", "mark line", upright=True))
+    if recognition.bayes_error is not None:
+        marks.append(Level(recognition.bayes_error, "Bayes error", "mark line", upright=True))
     panel = Panel(
         Axis("Classification error", range=(0.0, np.nan)), Axis(names=_short(names)), tuple(marks)
     )
     bound = ""
-    if found.bayes_error is not None:
+    if recognition.bayes_error is not None:
         counted = (
-            f"for {found.bayes_error_sees} alone"
-            if found.bayes_error_sees
+            f"for {recognition.bayes_error_sees} alone"
+            if recognition.bayes_error_sees
             else "that the data set states"
         )
         bound = (
@@ -83,10 +83,10 @@ def _scores_chart(found: Recognition) -> Chart:
             "leak, or chance."
         )
     caption = (
-        f"Error on test signals: with all signals of a {found.group} in either the "
+        f"Error on test signals: with all signals of a {recognition.group} in either the "
         "training or the test data, and with signals split at "
         "random. The difference is the optimistic bias of the random split. Thin lines: "
-        f"95 % intervals, which count {found.group}s, not signals.{bound}"
+        f"95 % intervals, which count {recognition.group}s, not signals.{bound}"
     )
     return Chart(
         "scores",
@@ -98,21 +98,21 @@ def _scores_chart(found: Recognition) -> Chart:
 
 
 def _lying(
-    places: np.ndarray, scores: list[Score], words: str, role: str, names: list[str]
+    places: np.ndarray, scores: list[Score], phrase: str, role: str, names: list[str]
 ) -> Bars:
     values, low, high = (
-        np.array(one)
-        for one in zip(*((one.value, one.low, one.high) for one in scores), strict=True)
+        np.array(score)
+        for score in zip(*((score.value, score.low, score.high) for score in scores), strict=True)
     )
     return Bars(
-        places, values, words, role, 0.34, lying=True, low=low, high=high, texts=tuple(names)
+        places, values, phrase, role, 0.34, lying=True, low=low, high=high, texts=tuple(names)
     )
 
 
-def _confusion_chart(found: Recognition) -> Chart:
-    counts = found.confusion[found.best]
+def _confusion_chart(recognition: Recognition) -> Chart:
+    counts = recognition.confusion[recognition.best]
     parts = counts / counts.sum(axis=1, keepdims=True)
-    names = tuple(shortened(visible(name), _LETTERS) for name in found.class_names)
+    names = tuple(shortened(visible(name), _LETTERS) for name in recognition.class_names)
     places = np.arange(float(len(names)))
     texts = tuple(
         f"{truth} classified as {guess}: {parts[row, column]:.1%}"
@@ -122,29 +122,29 @@ def _confusion_chart(found: Recognition) -> Chart:
     cells = Map(places, places, parts, Axis("Fraction of the class", range=(0.0, 1.0)), texts=texts)
     panel = Panel(Axis("Predicted class", names=names), Axis("True class", names=names), (cells,))
     caption = (
-        f"Predicted classes of the best classifier ({found.best}) for {found.group}s not used "
-        "in training; mean over the seeds."
+        f"Predicted classes of the best classifier ({recognition.best}) for {recognition.group}s "
+        "not used in training; mean over the seeds."
     )
     return Chart("confusion", "Confusion matrix", ((panel,),), caption, _HEIGHT)
 
 
-def _unseen_chart(found: Recognition) -> Chart:
-    rows = found.unseen[::-1]
-    names = [f"{one.key}: {one.words}" for one in rows]
+def _unseen_chart(recognition: Recognition) -> Chart:
+    rows = recognition.unseen[::-1]
+    names = [f"{row.key}: {row.words}" for row in rows]
     places = np.arange(float(len(rows)))
     marks = (
-        _lying(places + 0.18, [one.seen for one in rows], "in the training data", "detail", names),
-        _lying(places - 0.18, [one.unseen for one in rows], "left out of training", "lower", names),
-        Level(1.0 / len(found.class_names), "chance", "dotted", upright=True),
+        _lying(places + 0.18, [row.seen for row in rows], "in the training data", "detail", names),
+        _lying(places - 0.18, [row.unseen for row in rows], "left out of training", "lower", names),
+        Level(1.0 / len(recognition.class_names), "chance", "dotted", upright=True),
     )
     panel = Panel(Axis("Balanced accuracy", range=(0.0, 1.0)), Axis(names=_short(names)), marks)
     caption = (
         "Signals in each range of a sampled key, in SI units, classified after training on "
         "all ranges, and after training on the others alone; "
-        f"both are grouped by {found.group}. Not left out are ranges of the sphere's "
+        f"both are grouped by {recognition.group}. Not left out are ranges of the sphere's "
         "material and of the contact, and "
         "those without which a class could not be trained or "
-        f"tested. Best classifier: {found.best}."
+        f"tested. Best classifier: {recognition.best}."
     )
     return Chart(
         "unseen",
@@ -155,29 +155,33 @@ def _unseen_chart(found: Recognition) -> Chart:
     )
 
 
-def _robustness_chart(found: Recognition) -> Chart:
-    levels = np.array([one.level for one in found.noise])[::-1]
+def _robustness_chart(recognition: Recognition) -> Chart:
+    levels = np.array([score.level for score in recognition.noise])[::-1]
     marks: list[Mark] = []
-    for number, (words, scores) in enumerate(
+    for number, (phrase, scores) in enumerate(
         (
-            ("trained with noise", [one.trained_with for one in found.noise]),
-            ("trained without noise", [one.trained_without for one in found.noise]),
+            ("trained with noise", [score.trained_with for score in recognition.noise]),
+            ("trained without noise", [score.trained_without for score in recognition.noise]),
         )
     ):
         values, low, high = (
-            np.array(one)[::-1]
-            for one in zip(*((one.value, one.low, one.high) for one in scores), strict=True)
+            np.array(score)[::-1]
+            for score in zip(
+                *((score.value, score.low, score.high) for score in scores), strict=True
+            )
         )
         marks += [
-            Line(levels, values, words, series(number), marked=True),
+            Line(levels, values, phrase, series(number), marked=True),
             Points(levels, values, role=series(number), low=low, high=high),
         ]
     marks.append(
         Level(
-            found.scores[found.best].balanced_accuracy.value, "signals without noise", "reference"
+            recognition.scores[recognition.best].balanced_accuracy.value,
+            "signals without noise",
+            "reference",
         )
     )
-    marks.append(Level(1.0 / len(found.class_names), "chance", "dotted"))
+    marks.append(Level(1.0 / len(recognition.class_names), "chance", "dotted"))
     panel = Panel(
         Axis("Signal-to-noise ratio", "dB"),
         Axis("Balanced accuracy", range=(0.0, 1.0)),
@@ -186,25 +190,25 @@ def _robustness_chart(found: Recognition) -> Chart:
     caption = (
         "White noise of the same power is added to all signals of a sensor before their "
         "features are computed; the ratio refers to the "
-        f"median of their mean squares. Best classifier: {found.best}."
+        f"median of their mean squares. Best classifier: {recognition.best}."
     )
     return Chart("robustness", "Recognition in noise", ((panel,),), caption, _HEIGHT)
 
 
-def _reliability_chart(found: Recognition) -> Chart:
+def _reliability_chart(recognition: Recognition) -> Chart:
     marks: list[Mark] = [
         Line(np.array([0.0, 1.0]), np.array([0.0, 1.0]), "calibrated", "reference")
     ]
-    for number, name in enumerate(dict.fromkeys(one.class_name for one in found.reliability)):
-        rows = [one for one in found.reliability if one.class_name == name]
-        part, told, low, high = (
-            np.array([getattr(one, key) for one in rows])
+    for number, name in enumerate(dict.fromkeys(row.class_name for row in recognition.reliability)):
+        rows = [row for row in recognition.reliability if row.class_name == name]
+        part, predicted, low, high = (
+            np.array([getattr(row, key) for row in rows])
             for key in ("part", "probability", "low", "high")
         )
-        texts = tuple(f"{one.signals} signals" for one in rows)
+        texts = tuple(f"{row.signals} signals" for row in rows)
         marks += [
-            Line(told, part, name, series(number)),
-            Points(told, part, role=series(number), low=low, high=high, texts=texts),
+            Line(predicted, part, name, series(number)),
+            Points(predicted, part, role=series(number), low=low, high=high, texts=texts),
         ]
     panel = Panel(
         Axis("Predicted probability", range=(0.0, 1.0)),
@@ -214,15 +218,15 @@ def _reliability_chart(found: Recognition) -> Chart:
     caption = (
         "Observed frequency of a class over its predicted probability (reliability "
         "diagram); mean absolute difference "
-        f"{found.calibration_error:.3f}. Best classifier: {found.best}."
+        f"{recognition.calibration_error:.3f}. Best classifier: {recognition.best}."
     )
     return Chart("reliability", "Calibration of the probabilities", ((panel,),), caption, _HEIGHT)
 
 
-def _importance_chart(found: Recognition) -> Chart:
-    rows = found.importance[:_MOST_FEATURES][::-1]
-    names = [one.feature for one in rows]
-    loss, spread = (np.array([getattr(one, key) for one in rows]) for key in ("loss", "spread"))
+def _importance_chart(recognition: Recognition) -> Chart:
+    rows = recognition.importance[:_MOST_FEATURES][::-1]
+    names = [row.feature for row in rows]
+    loss, spread = (np.array([getattr(row, key) for row in rows]) for key in ("loss", "spread"))
     places = np.arange(float(len(rows)))
     bars = Bars(places, loss, lying=True, low=loss - spread, high=loss + spread, texts=tuple(names))
     panel = Panel(
@@ -231,30 +235,32 @@ def _importance_chart(found: Recognition) -> Chart:
         (bars, Level(0.0, role="main", upright=True)),
     )
     caption = (
-        f"Permutation importance: loss of balanced accuracy on {found.group}s not used in "
+        f"Permutation importance: loss of balanced accuracy on {recognition.group}s not used in "
         "training when a feature is exchanged between "
         "their signals; thin lines: standard deviation over the folds. Correlated features "
-        f"share their importance. Best classifier: {found.best}."
+        f"share their importance. Best classifier: {recognition.best}."
     )
     return Chart(
         "importance", "Importance of features", ((panel,),), caption, 0.9 + 0.26 * len(names)
     )
 
 
-def _fraction_chart(found: Recognition) -> Chart:
+def _fraction_chart(recognition: Recognition) -> Chart:
     panels = []
-    across, up = (
-        Axis("True fraction", range=(-0.02, 1.02)),
-        Axis("Estimated fraction", range=(0.0, 1.0)),
-    )
-    for impacts in dict.fromkeys(one.impacts for one in found.streams):
+    across = Axis("True fraction", range=(-0.02, 1.02))
+    up = Axis("Estimated fraction", range=(0.0, 1.0))
+    for impacts in dict.fromkeys(stream.impacts for stream in recognition.streams):
         marks: list[Mark] = [Line(np.array([0.0, 1.0]), np.array([0.0, 1.0]), "true", "reference")]
-        for number, name in enumerate(dict.fromkeys(one.class_name for one in found.streams)):
+        for number, name in enumerate(
+            dict.fromkeys(stream.class_name for stream in recognition.streams)
+        ):
             rows = [
-                one for one in found.streams if (one.class_name, one.impacts) == (name, impacts)
+                stream
+                for stream in recognition.streams
+                if (stream.class_name, stream.impacts) == (name, impacts)
             ]
             true, counted, value, low, high = (
-                np.array([getattr(one, key) for one in rows])
+                np.array([getattr(stream, key) for stream in rows])
                 for key in ("fraction", "counted", "adjusted", "low", "high")
             )
             marks.append(Line(true, counted, f"{name}, counted", f"thin {series(number)}"))
@@ -264,7 +270,7 @@ def _fraction_chart(found: Recognition) -> Chart:
             ]
         panels.append(Panel(across, up, tuple(marks), f"{impacts} impacts"))
     caption = (
-        f"The fraction of a class in streams of {found.group}s that were not used to "
+        f"The fraction of a class in streams of {recognition.group}s that were not used to "
         "estimate the confusion matrix: as counted, and "
         "corrected by it, with mean 95 % intervals."
     )

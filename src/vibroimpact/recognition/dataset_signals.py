@@ -28,9 +28,9 @@ from vibroimpact.files.reading import with_path
 from vibroimpact.files.result_folder import SUMMARY
 from vibroimpact.quoting import quoted
 from vibroimpact.recognition.labelled_signals import GROUPS, LabelledSignals, SensorSignals
-from vibroimpact.studies.study import load_study
-from vibroimpact.studies.study_folder import DATASET as STUDY
-from vibroimpact.studies.study_folder import is_study
+from vibroimpact.studies.computation.study import load_study
+from vibroimpact.studies.computation.study_folder import DATASET as STUDY
+from vibroimpact.studies.computation.study_folder import is_study
 
 DATASET = "dataset.nc"
 """File of data sets that are no studies; a study is read as `dataset` and `sweep` write it."""

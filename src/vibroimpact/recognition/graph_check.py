@@ -27,7 +27,8 @@ _MOST_COLUMNS = 40_000
 """Numbers a signal, of all results of a graph."""
 
 _MOST_NODES = 20_000
-_FLOAT, _NUMBERS = 1, (1, 6, 7, 9, 11)
+_FLOAT = 1
+_NUMBERS = (1, 6, 7, 9, 11)
 """Types of ONNX: single precision; and those of constants (also whole numbers, truth
 values and double precision).
 """
@@ -100,14 +101,14 @@ def _constants(initializers: Sequence[Any]) -> dict[str, NDArray[Any]]:
     """Return the constants of a graph by name."""
     from onnx import TensorProto, numpy_helper
 
-    found: dict[str, NDArray[Any]] = {}
+    constants: dict[str, NDArray[Any]] = {}
     for tensor in initializers:
         name = quoted(tensor.name)
         if tensor.data_location == TensorProto.EXTERNAL or tensor.external_data:
             raise InputError(
                 f"the constant {name} of the graph lies in another file; train the model anew"
             )
-        if tensor.name in found:
+        if tensor.name in constants:
             raise InputError(f"the graph gives {name} twice; train the model anew")
         if tensor.data_type not in _NUMBERS or len(tensor.dims) > 1:
             raise InputError(
@@ -115,13 +116,13 @@ def _constants(initializers: Sequence[Any]) -> dict[str, NDArray[Any]]:
                 "train the model anew"
             )
         try:
-            found[tensor.name] = numpy_helper.to_array(tensor)
+            constants[tensor.name] = numpy_helper.to_array(tensor)
         except Exception:  # of many types, by what is damaged
             raise InputError(
                 f"the constant {name} of the graph does not have as many values as it "
                 "states; train the model anew"
             ) from None
-    return found
+    return constants
 
 
 def _input_name(graph: Any, features: int) -> str:
@@ -160,20 +161,20 @@ def _check_outputs(graph: Any, known: Mapping[str, Shape], classes: int) -> None
 
 def _attributes(node: Any) -> Attributes:
     """Return the attributes of a node: numbers, texts and arrays of them."""
-    found: Attributes = {}
+    attributes: Attributes = {}
     for attribute in node.attribute:
         field = _KINDS.get(attribute.type)
-        if attribute.name in found:
+        if attribute.name in attributes:
             raise InputError(
                 f"{_name(node)} of the graph has two attributes {quoted(attribute.name)}; "
                 "train the model anew"
             )
         if field is None or attribute.ref_attr_name:
-            words = (
+            message = (
                 f"{_name(node)} of the graph has an attribute {quoted(attribute.name)} that is "
                 "no number or text"
             )
-            raise InputError(f"{words}; train the model anew")
+            raise InputError(f"{message}; train the model anew")
         value = getattr(attribute, field)
         if field == "floats":
             value = np.fromiter(value, float, len(value))
@@ -181,8 +182,8 @@ def _attributes(node: Any) -> Attributes:
             value = np.fromiter(value, np.int64, len(value))
         elif field == "strings":
             value = list(value)
-        found[attribute.name] = value
-    return found
+        attributes[attribute.name] = value
+    return attributes
 
 
 def _shapes_of(
@@ -193,7 +194,8 @@ def _shapes_of(
     classes: int,
 ) -> list[Shape]:
     """Return the shapes of the results of a node, after a check that it is one of a classifier."""
-    name, attributes = _name(node), _attributes(node)
+    name = _name(node)
+    attributes = _attributes(node)
     missing = [given for given in node.input if given not in known]
     if missing:
         raise InputError(

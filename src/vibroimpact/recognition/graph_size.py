@@ -15,7 +15,9 @@ _MOST_PARTS = 200_000
 _MOST_OTHER_BYTES = 4_000_000
 """Bytes beside lists of numbers and of short texts, which grow little."""
 
-_GRAPH, _NODE, _ATTRIBUTE = 7, 1, 5
+_GRAPH = 7
+_NODE = 1
+_ATTRIBUTE = 5
 """Numbers of the fields of the format: the graph of a model, a node of a graph, an
 attribute of a node.
 """
@@ -32,7 +34,8 @@ def check_size(data: bytes) -> None:
     """Raise InputError if the bytes of an ONNX model would grow beyond some hundred
     megabytes as they are parsed, or are cut short.
     """
-    parts, lists = 0, 0
+    parts = 0
+    lists = 0
     for graph in _fields(data, 0, len(data), _GRAPH):
         for node in _fields(data, *graph, _NODE):
             for start, end in _fields(data, *node, _ATTRIBUTE):

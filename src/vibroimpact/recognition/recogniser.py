@@ -36,7 +36,9 @@ from vibroimpact.recognition.labelled_signals import LabelledSignals
 from vibroimpact.recognition.onnx_runtime import silent_onnxruntime
 from vibroimpact.recognition.signal_features import by_name, features_of
 
-FOLDER, CARD, GRAPH = "model", "card.json", "model.onnx"
+FOLDER = "model"
+CARD = "card.json"
+GRAPH = "model.onnx"
 _GRAPH_FILE = FileKind(
     "a graph is a file in ONNX", 100_000_000, "larger graphs are not read; train on fewer signals"
 )
@@ -97,17 +99,17 @@ class Recogniser:
                     f"the model was trained on the sensor {quoted(sensor)}, which these "
                     "signals do not have"
                 )
-            one = signals.sensors[sensor]
+            given = signals.sensors[sensor]
             if (
-                not np.isclose(one.rate, trained["rate_Hz"], rtol=1e-6)
-                or one.unit != trained["unit"]
+                not np.isclose(given.rate, trained["rate_Hz"], rtol=1e-6)
+                or given.unit != trained["unit"]
             ):
-                words = (
+                message = (
                     f"at {trained['rate_Hz']:.10g} Hz in {trained['unit']}, and these signals "
-                    f"are at {one.rate:.10g} Hz in {one.unit}"
+                    f"are at {given.rate:.10g} Hz in {given.unit}"
                 )
-                raise InputError(f"{sensor}: the model was trained {words}")
-            if (length := one.values.shape[1]) != trained["samples"]:
+                raise InputError(f"{sensor}: the model was trained {message}")
+            if (length := given.values.shape[1]) != trained["samples"]:
                 raise InputError(
                     f"{sensor}: the model was trained on {trained['samples']} samples a "
                     f"signal, and these have {length}"
@@ -129,14 +131,14 @@ class Recogniser:
             Seed of the draws for the intervals.
         """
         generator = np.random.default_rng(seed)
-        found = {}
+        estimates = {}
         for number, name in enumerate(self.class_names):
             rates = self.card["confusion"][name]
             drawn = Rates(np.array(rates["true_rate"]), np.array(rates["false_rate"]))
-            found[name] = estimate_fraction(
+            estimates[name] = estimate_fraction(
                 int((guessed == number).sum()), len(guessed), drawn, generator
             )
-        return found
+        return estimates
 
 
 def graph_of(estimator: Any, values: Floats, classes: int) -> bytes:
@@ -166,14 +168,15 @@ def graph_of(estimator: Any, values: Floats, classes: int) -> bytes:
         graph: bytes = to_onnx(
             estimator, values[:1].astype(np.float32), options={"zipmap": False}
         ).SerializeToString()
-    found, expected = run_graph(graph, values, classes), estimator.predict_proba(values)
-    different = float(np.mean(found.argmax(axis=1) != expected.argmax(axis=1)))
-    if found.shape != (len(values), classes) or different > _DIFFERENT:
-        words = (
+    probabilities = run_graph(graph, values, classes)
+    expected = estimator.predict_proba(values)
+    different = float(np.mean(probabilities.argmax(axis=1) != expected.argmax(axis=1)))
+    if probabilities.shape != (len(values), classes) or different > _DIFFERENT:
+        message = (
             f"the saved model takes {different:.1%} of the signals for another "
             "class than the trained one"
         )
-        raise ComputationError(f"{words}; the conversion to ONNX failed")
+        raise ComputationError(f"{message}; the conversion to ONNX failed")
     return graph
 
 
@@ -200,7 +203,7 @@ def run_graph(graph: bytes, values: Floats, classes: int) -> Floats:
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = 1
     options.log_severity_level = 4
-    found = np.empty((len(values), classes))
+    outputs = np.empty((len(values), classes))
     try:
         session = onnxruntime.InferenceSession(graph, options, providers=["CPUExecutionProvider"])
         (given,) = session.get_inputs()
@@ -208,13 +211,13 @@ def run_graph(graph: bytes, values: Floats, classes: int) -> Floats:
             _, probabilities = session.run(
                 None, {given.name: values[first : first + ROWS].astype(np.float32)}
             )
-            found[first : first + ROWS] = probabilities
+            outputs[first : first + ROWS] = probabilities
     except Exception as error:  # onnxruntime has a class of its own for each kind of fault
         raise InputError(
             f"the graph can't be run: {shortened(visible(str(error)), _LONGEST_REASON)}; "
             "train the model anew"
         ) from None
-    return _probabilities(found)
+    return _probabilities(outputs)
 
 
 def _probabilities(values: Floats) -> Floats:
@@ -286,5 +289,5 @@ def doubts_of_version(recogniser: Recogniser) -> list[str]:
     saved = recogniser.card["version"]
     if saved == __version__:
         return []
-    words = "the features may be computed differently; train it anew where that matters"
-    return [f"the model was saved by vibroimpact {saved} and this is {__version__}: {words}"]
+    phrase = "the features may be computed differently; train it anew where that matters"
+    return [f"the model was saved by vibroimpact {saved} and this is {__version__}: {phrase}"]

@@ -27,7 +27,8 @@ from vibroimpact.results.csv_files import write_csv
 
 Row = dict[str, Any]
 
-GROUPED, RANDOM = "grouped", "random"
+GROUPED = "grouped"
+RANDOM = "random"
 """The two splits, as they are named in files."""
 
 _LEAST_SHOWN = 5e-4  # Bayes error below which a tenth of a per cent is not reached
@@ -147,15 +148,15 @@ def score_cells(recognition: Recognition) -> list[tuple[str, ...]]:
     return [
         (
             name,
-            _percent(one.error.value, digits),
-            _percents(one.error, digits),
-            _percent(one.balanced_accuracy.value, digits),
-            _percents(one.balanced_accuracy, digits),
+            _percent(score.error.value, digits),
+            _percents(score.error, digits),
+            _percent(score.balanced_accuracy.value, digits),
+            _percents(score.balanced_accuracy, digits),
             _percent(recognition.random[name].balanced_accuracy.value, digits),
             f"{100.0 * recognition.optimism[name].value:+.{digits}f}",
-            f"{one.brier.value:.{digits + 2}f}",
+            f"{score.brier.value:.{digits + 2}f}",
         )
-        for name, one in recognition.scores.items()
+        for name, score in recognition.scores.items()
     ]
 
 
@@ -174,11 +175,11 @@ def confusion_table(recognition: Recognition) -> Table:
 
 def score_rows(recognition: Recognition) -> list[Row]:
     """Return a row for each classifier and split, as `scores.csv` has them."""
-    kinds = {one.name: one.kind for one in recognition.compared}
+    kinds = {score.name: score.kind for score in recognition.compared}
     return [
-        {"classifier": name, "kind": kinds[name], "split": split, **_scores(one)}
+        {"classifier": name, "kind": kinds[name], "split": split, **_scores(score)}
         for split, scores in ((GROUPED, recognition.scores), (RANDOM, recognition.random))
-        for name, one in scores.items()
+        for name, score in scores.items()
     ]
 
 
@@ -191,9 +192,9 @@ def optimism_rows(recognition: Recognition) -> list[Row]:
             "classifier": name,
             "balanced_accuracy_grouped": recognition.scores[name].balanced_accuracy.value,
             "balanced_accuracy_random": recognition.random[name].balanced_accuracy.value,
-            **_interval("optimism", one),
+            **_interval("optimism", optimism),
         }
-        for name, one in recognition.optimism.items()
+        for name, optimism in recognition.optimism.items()
     ]
 
 
@@ -217,11 +218,11 @@ def robustness_rows(recognition: Recognition) -> list[Row]:
     """Return the balanced accuracy in noise, as `robustness.csv` has it."""
     return [
         {
-            "signal_to_noise_dB": one.level,
-            **_interval("trained_without", one.trained_without),
-            **_interval("trained_with", one.trained_with),
+            "signal_to_noise_dB": level.level,
+            **_interval("trained_without", level.trained_without),
+            **_interval("trained_with", level.trained_with),
         }
-        for one in recognition.noise
+        for level in recognition.noise
     ]
 
 
@@ -231,13 +232,13 @@ def unseen_rows(recognition: Recognition) -> list[Row]:
     """
     return [
         {
-            "key": one.key,
-            "range": one.words,
-            "signals": one.signals,
-            **_interval("trained_on", one.seen),
-            **_interval("left_out", one.unseen),
+            "key": region.key,
+            "range": region.words,
+            "signals": region.signals,
+            **_interval("trained_on", region.seen),
+            **_interval("left_out", region.unseen),
         }
-        for one in recognition.unseen
+        for region in recognition.unseen
     ]
 
 
@@ -252,12 +253,12 @@ def importance_rows(recognition: Recognition) -> list[Row]:
     )
     return [
         {
-            "feature": one.feature,
-            "unit": units[one.feature],
-            "loss": one.loss,
-            "loss_spread": one.spread,
+            "feature": loss.feature,
+            "unit": units[loss.feature],
+            "loss": loss.loss,
+            "loss_spread": loss.spread,
         }
-        for one in recognition.importance
+        for loss in recognition.importance
     ]
 
 
@@ -265,14 +266,14 @@ def reliability_rows(recognition: Recognition) -> list[Row]:
     """Return the calibration curve, as `reliability.csv` has it."""
     return [
         {
-            "class": one.class_name,
-            "signals": one.signals,
-            "probability": one.probability,
-            "part": one.part,
-            "part_low": one.low,
-            "part_high": one.high,
+            "class": level.class_name,
+            "signals": level.signals,
+            "probability": level.probability,
+            "part": level.part,
+            "part_low": level.low,
+            "part_high": level.high,
         }
-        for one in recognition.reliability
+        for level in recognition.reliability
     ]
 
 
@@ -280,17 +281,17 @@ def fraction_rows(recognition: Recognition) -> list[Row]:
     """Return how well fractions are estimated, as `fraction.csv` has it."""
     return [
         {
-            "class": one.class_name,
-            "fraction": one.fraction,
-            "impacts": one.impacts,
-            "counted": one.counted,
-            "estimate": one.adjusted,
-            "estimate_low": one.low,
-            "estimate_high": one.high,
-            "error_rms": one.error,
-            "covered": one.covered,
+            "class": stream.class_name,
+            "fraction": stream.fraction,
+            "impacts": stream.impacts,
+            "counted": stream.counted,
+            "estimate": stream.adjusted,
+            "estimate_low": stream.low,
+            "estimate_high": stream.high,
+            "error_rms": stream.error,
+            "covered": stream.covered,
         }
-        for one in recognition.streams
+        for stream in recognition.streams
     ]
 
 
@@ -342,7 +343,8 @@ def _summary(recognition: Recognition) -> dict[str, Any]:
         "scores": grouped,
         "optimism": optimism_rows(recognition),
         "balanced_accuracy_by_seed": {
-            name: one.balanced_accuracy.seeds.tolist() for name, one in recognition.scores.items()
+            name: score.balanced_accuracy.seeds.tolist()
+            for name, score in recognition.scores.items()
         },
         "model": {
             key: recognition.recogniser.card[key]
@@ -354,7 +356,8 @@ def _summary(recognition: Recognition) -> dict[str, Any]:
 
 def sentences(recognition: Recognition) -> Iterator[str]:
     """Yield what the scores say, in sentences."""
-    best, digits = recognition.scores[recognition.best], _digits(recognition)
+    best = recognition.scores[recognition.best]
+    digits = _digits(recognition)
     yield (
         f"The best classifier, {recognition.best}, has a balanced accuracy of "
         f"{_percent(best.balanced_accuracy.value, digits)} % "
@@ -393,9 +396,9 @@ def sentences(recognition: Recognition) -> Iterator[str]:
                 f"{recognition.group}s are needed."
             )
     hardest = [
-        one
-        for one in recognition.streams
-        if one.impacts == max(row.impacts for row in recognition.streams)
+        stream
+        for stream in recognition.streams
+        if stream.impacts == max(row.impacts for row in recognition.streams)
     ]
     if hardest:
         worst = max(hardest, key=lambda row: row.error)
@@ -432,23 +435,23 @@ def _digits(recognition: Recognition) -> int:
     return 0 if coarse(recognition.scores[recognition.best].error) else 1
 
 
-def _scores(one: Scores) -> Row:
+def _scores(scores: Scores) -> Row:
     row: Row = {}
     for name in ("error", "balanced_accuracy", "brier", "log_loss"):
-        row |= _interval(name, getattr(one, name))
+        row |= _interval(name, getattr(scores, name))
     return {
         **row,
-        "balanced_accuracy_spread_over_seeds": float(np.std(one.balanced_accuracy.seeds)),
+        "balanced_accuracy_spread_over_seeds": float(np.std(scores.balanced_accuracy.seeds)),
     }
 
 
-def _interval(name: str, one: Score) -> Row:
-    return {name: one.value, f"{name}_low": one.low, f"{name}_high": one.high}
+def _interval(name: str, score: Score) -> Row:
+    return {name: score.value, f"{name}_low": score.low, f"{name}_high": score.high}
 
 
 def _percent(value: float, digits: int = 1) -> str:
     return f"{100.0 * value:.{digits}f}"
 
 
-def _percents(one: Score, digits: int) -> str:
-    return f"{_percent(one.low, digits)} to {_percent(one.high, digits)}"
+def _percents(score: Score, digits: int) -> str:
+    return f"{_percent(score.low, digits)} to {_percent(score.high, digits)}"

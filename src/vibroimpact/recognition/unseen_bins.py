@@ -113,9 +113,9 @@ def score_unseen(
         As `run_jobs` takes them.
     """
     bins = []
-    for key, words, inside in bins_of(signals):
+    for key, phrase, inside in bins_of(signals):
         if _usable(inside, chosen):
-            bins.append((key, words, inside))
+            bins.append((key, phrase, inside))
     jobs = [
         partial(_guess_left_out, chosen, values, inside, split, parameters)
         for _, _, inside in bins
@@ -124,7 +124,7 @@ def score_unseen(
     guesses = iter(run_jobs("ranges left out in training", jobs, workers, progress))
     right_seen = (chosen.guessed == chosen.classes).astype(float)[np.newaxis]
     scores = []
-    for key, words, inside in bins:
+    for key, phrase, inside in bins:
         guessed = np.full(len(chosen.classes), -1)
         for split, _ in chosen.parts:
             guessed[split.test[inside[split.test]]] = next(guesses)
@@ -133,7 +133,7 @@ def score_unseen(
         scores.append(
             Unseen(
                 key,
-                words,
+                phrase,
                 signals=int(inside.sum()),
                 seen=within.balanced(right_seen[:, inside]),
                 unseen=within.balanced(right_unseen[:, inside]),

@@ -33,10 +33,10 @@ class TerminalConsole(Console):
         """Yield the segments of a renderable."""
         if isinstance(renderable, Text):
             # before wrapping, since the width may change
-            words = encodable(renderable.plain, self.encoding)
-            if words != renderable.plain:
+            phrase = encodable(renderable.plain, self.encoding)
+            if phrase != renderable.plain:
                 renderable = Text(
-                    words,
+                    phrase,
                     renderable.style,
                     justify=renderable.justify,
                     overflow=renderable.overflow,

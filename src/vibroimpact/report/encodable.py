@@ -54,7 +54,7 @@ _REPLACEMENTS = {
 _GREEK = re.compile(r"GREEK (SMALL|CAPITAL) LETTER (\w+)$")
 
 
-def encodable(words: str, encoding: str) -> str:
+def encodable(phrase: str, encoding: str) -> str:
     """Return a text with characters that an encoding lacks replaced by readable ones.
 
     Powers and powers of ten are written as in a program, Greek letters by name, accents are
@@ -62,7 +62,7 @@ def encodable(words: str, encoding: str) -> str:
 
     Parameters
     ----------
-    words : str
+    phrase : str
         The text.
     encoding : str
         Name of the encoding; an unknown one is treated as ASCII.
@@ -75,33 +75,33 @@ def encodable(words: str, encoding: str) -> str:
     '269 µs, 10^-7 m²'
     """
     try:
-        words.encode(encoding)
+        phrase.encode(encoding)
     except UnicodeEncodeError:
         pass
     except LookupError:
-        return encodable(words, "ascii")
+        return encodable(phrase, "ascii")
     else:
-        return words
-    words = _TIMES_TEN.sub(
-        lambda found: (
-            found[0] if _can_encode(encoding, found[0]) else f"e{found[1].translate(_PLAIN_RAISED)}"
+        return phrase
+    phrase = _TIMES_TEN.sub(
+        lambda match: (
+            match[0] if _can_encode(encoding, match[0]) else f"e{match[1].translate(_PLAIN_RAISED)}"
         ),
-        words,
+        phrase,
     )
-    words = _RAISED.sub(
-        lambda found: (
-            found[0] if _can_encode(encoding, found[0]) else f"^{found[0].translate(_PLAIN_RAISED)}"
+    phrase = _RAISED.sub(
+        lambda match: (
+            match[0] if _can_encode(encoding, match[0]) else f"^{match[0].translate(_PLAIN_RAISED)}"
         ),
-        words,
+        phrase,
     )
     return "".join(
-        letter if _can_encode(encoding, letter) else _replacement(letter) for letter in words
+        letter if _can_encode(encoding, letter) else _replacement(letter) for letter in phrase
     )
 
 
-def _can_encode(encoding: str, words: str) -> bool:
+def _can_encode(encoding: str, phrase: str) -> bool:
     try:
-        words.encode(encoding)
+        phrase.encode(encoding)
     except UnicodeEncodeError:
         return False
     return True

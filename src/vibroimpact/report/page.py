@@ -129,12 +129,12 @@ def plotly_script() -> str:
     """Return the text of plotly's script, from the installed package, which is not
     imported for it.
     """
-    found = find_spec("plotly")
-    assert found is not None  # a dependency of this package
-    assert found.submodule_search_locations is not None
-    return (Path(found.submodule_search_locations[0]) / "package_data" / "plotly.min.js").read_text(
-        encoding="utf-8"
-    )
+    package = find_spec("plotly")
+    assert package is not None  # a dependency of this package
+    assert package.submodule_search_locations is not None
+    return (
+        Path(package.submodule_search_locations[0]) / "package_data" / "plotly.min.js"
+    ).read_text(encoding="utf-8")
 
 
 @cache

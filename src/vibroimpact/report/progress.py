@@ -37,7 +37,8 @@ def patient_progress(what: str, console: Console) -> Iterator[Callable[[float], 
         transient=True,
     )
     task = bar.add_task(what, total=1.0)
-    begin, shown = time.monotonic(), False
+    begin = time.monotonic()
+    shown = False
 
     def update(fraction: float) -> None:
         nonlocal shown

@@ -8,7 +8,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 
-TURN, TILT = np.radians(-32.0), np.radians(24.0)
+TURN = np.radians(-32.0)
+TILT = np.radians(24.0)
 """Viewing direction: azimuth around the vertical, and elevation above the plane [rad]."""
 
 VIEWER: Floats = np.array(

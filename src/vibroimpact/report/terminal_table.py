@@ -17,7 +17,8 @@ from vibroimpact.report.encodable import encodable
 _BETWEEN = 2
 """Spaces between two columns."""
 
-_WIDEST_PHRASE, _LEAST_LINE = 30, 24
+_WIDEST_PHRASE = 30
+_LEAST_LINE = 24
 """Widest text that may be wrapped to single words, and least line width of wider text;
 with less, the text goes below its row.
 """
@@ -83,15 +84,17 @@ class TerminalTable:
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Yield the lines, transliterated to the encoding of the terminal."""
 
-        def shown(words: str) -> str:  # no-break spaces are kept until the lines are wrapped
+        def shown(phrase: str) -> str:  # no-break spaces are kept until the lines are wrapped
             return _NO_BREAK.join(
-                encodable(part, options.encoding) for part in words.split(_NO_BREAK)
+                encodable(part, options.encoding) for part in phrase.split(_NO_BREAK)
             )
 
         columns = [
-            TerminalColumn(shown(one.heading), [shown(cell) for cell in one.cells], one.text)
-            for one in self.columns
-            if one.least_width <= options.max_width
+            TerminalColumn(
+                shown(column.heading), [shown(cell) for cell in column.cells], column.text
+            )
+            for column in self.columns
+            if column.least_width <= options.max_width
         ]
         for line, style in self._lines(columns, options.max_width):
             yield Text(line.replace(_NO_BREAK, " "), style=style)
@@ -101,7 +104,7 @@ class TerminalTable:
         """Natural width: all columns side by side, no text wrapped."""
         return (
             self.indent
-            + sum(_natural_width(one) for one in self.columns)
+            + sum(_natural_width(column) for column in self.columns)
             + _BETWEEN * (len(self.columns) - 1)
         )
 
@@ -128,9 +131,11 @@ def with_gap(columns: Sequence[TerminalColumn], row: int) -> list[TerminalColumn
     """Return columns with an ellipsis row inserted before a row, to mark omitted rows."""
     return [
         TerminalColumn(
-            one.heading, [*one.cells[:row], "" if place else "...", *one.cells[row:]], one.text
+            column.heading,
+            [*column.cells[:row], "" if place else "...", *column.cells[row:]],
+            column.text,
         )
-        for place, one in enumerate(columns)
+        for place, column in enumerate(columns)
     ]
 
 
@@ -145,13 +150,14 @@ def _arrange(
     columns: list[TerminalColumn], width: int
 ) -> tuple[list[list[tuple[TerminalColumn, int]]], list[TerminalColumn]]:
     """Return blocks of columns with their widths, and the text columns that go below the rows."""
-    key, rest = columns[0], list(columns[1:])
+    key = columns[0]
+    rest = list(columns[1:])
     below: list[TerminalColumn] = []
     while True:
         chosen = _fitting_widths([key, *rest], width)
         if chosen is not None:
             return [list(zip([key, *rest], chosen, strict=True))], below
-        last = next((one for one in reversed(rest) if one.text), None)
+        last = next((column for column in reversed(rest) if column.text), None)
         if last is None:
             break
         rest.remove(last)
@@ -159,13 +165,13 @@ def _arrange(
     # the numbers alone are too wide: split them into blocks that repeat the first column
     first = (key, max(min(_natural_width(key), width // 3), min(_least_width(key), width // 2)))
     blocks: list[list[tuple[TerminalColumn, int]]] = [[first]]
-    for one in rest:
+    for column in rest:
         if (
             len(blocks[-1]) > 1
-            and sum(taken + _BETWEEN for _, taken in blocks[-1]) + _natural_width(one) > width
+            and sum(taken + _BETWEEN for _, taken in blocks[-1]) + _natural_width(column) > width
         ):
             blocks.append([first])
-        blocks[-1].append((one, _natural_width(one)))
+        blocks[-1].append((column, _natural_width(column)))
     return blocks, below
 
 
@@ -173,11 +179,12 @@ def _fitting_widths(columns: list[TerminalColumn], width: int) -> list[int] | No
     """Return column widths that fit side by side with the least wrapping; None if there
     are none.
     """
-    widths, least = [_natural_width(one) for one in columns], [_least_width(one) for one in columns]
-    for number, one in enumerate(columns):
-        if one.text:
+    widths = [_natural_width(column) for column in columns]
+    least = [_least_width(column) for column in columns]
+    for number, column in enumerate(columns):
+        if column.text:
             least[number] = min(least[number], width // 2)  # longer words are broken
-        if number and one.text:
+        if number and column.text:
             least[number] = (
                 least[number]
                 if widths[number] <= _WIDEST_PHRASE
@@ -218,8 +225,8 @@ def _least_width(column: TerminalColumn) -> int:
     )
 
 
-def _longest_word(words: str) -> int:
-    return max((cell_len(word) for word in re.split("[ \n]", words)), default=0)
+def _longest_word(phrase: str) -> int:
+    return max((cell_len(word) for word in re.split("[ \n]", phrase)), default=0)
 
 
 def _aligned(column: TerminalColumn) -> list[str]:
@@ -228,15 +235,15 @@ def _aligned(column: TerminalColumn) -> list[str]:
     """
     if column.text:
         return list(column.cells)
-    found = [_NUMBER.match(cell) for cell in column.cells]
+    matches = [_NUMBER.match(cell) for cell in column.cells]
     behind = [
         len(cell) - (len(match[0].split(".")[0]) if match else len(cell))
-        for cell, match in zip(column.cells, found, strict=True)
+        for cell, match in zip(column.cells, matches, strict=True)
     ]
-    most = max((after for after, match in zip(behind, found, strict=True) if match), default=0)
+    most = max((after for after, match in zip(behind, matches, strict=True) if match), default=0)
     return [
         cell + " " * (most - after if match else 0)
-        for cell, after, match in zip(column.cells, behind, found, strict=True)
+        for cell, after, match in zip(column.cells, behind, matches, strict=True)
     ]
 
 
@@ -244,8 +251,8 @@ def _block(
     block: list[tuple[TerminalColumn, int]], below: list[TerminalColumn], width: int, bold: set[int]
 ) -> Iterable[tuple[str, str]]:
     """Yield the lines of a block: headings, and rows with the text below each."""
-    if any(one.heading for one, _ in block):
-        wrapped = [_wrapped(one.heading, taken) for one, taken in block]
+    if any(column.heading for column, _ in block):
+        wrapped = [_wrapped(column.heading, taken) for column, taken in block]
         high = max(map(len, wrapped))
         for line in range(high):
             cells = [
@@ -253,11 +260,11 @@ def _block(
                 for lines in wrapped
             ]
             yield _row(block, cells), "bold"
-    aligned = [_aligned(one) for one, _ in block]
+    aligned = [_aligned(column) for column, _ in block]
     for number in range(len(block[0][0].cells)):
         cells_of = [
-            _wrapped(cells[number], taken) if one.text else [cells[number]]
-            for cells, (one, taken) in zip(aligned, block, strict=True)
+            _wrapped(cells[number], taken) if column.text else [cells[number]]
+            for cells, (column, taken) in zip(aligned, block, strict=True)
         ]
         style = "bold" if number in bold else ""
         for line in range(max(map(len, cells_of))):
@@ -265,26 +272,30 @@ def _block(
                 _row(block, [lines[line] if line < len(lines) else "" for lines in cells_of]),
                 style,
             )
-        for one in below:
-            if one.cells[number]:
-                said = f"{one.heading}: {one.cells[number]}" if one.heading else one.cells[number]
+        for column in below:
+            if column.cells[number]:
+                said = (
+                    f"{column.heading}: {column.cells[number]}"
+                    if column.heading
+                    else column.cells[number]
+                )
                 yield from ((f"    {line}", style) for line in _wrapped(said, width - 4))
 
 
 def _row(block: list[tuple[TerminalColumn, int]], cells: list[str]) -> str:
     """Return one line of a block."""
     filled = []
-    for (one, taken), cell in zip(block, cells, strict=True):
+    for (column, taken), cell in zip(block, cells, strict=True):
         blanks = " " * (taken - cell_len(cell))
-        filled.append(cell + blanks if one.text else blanks + cell)
+        filled.append(cell + blanks if column.text else blanks + cell)
     return (" " * _BETWEEN).join(filled)
 
 
-def _wrapped(words: str, width: int) -> list[str]:
+def _wrapped(phrase: str, width: int) -> list[str]:
     """Return a text wrapped to lines of a width; words longer than a line are broken."""
     lines = [
         line
-        for part in words.split("\n")
+        for part in phrase.split("\n")
         for line in textwrap.wrap(part, max(width, 1), break_on_hyphens=False)
     ]
     return lines or [""]

@@ -111,7 +111,9 @@ def contact_point_of(response: Response, model: ModalModel) -> tuple[float, floa
 
     It is the middle of the plate if the case gives none.
     """
-    from vibroimpact.structures.surface import place_of  # here, as it imports scipy.sparse
+    from vibroimpact.structures.finite_elements.surface import (
+        place_of,  # here, as it imports scipy.sparse
+    )
 
     source = response.problem.source or {}
     mesh = source.get("plate", {}).get("mesh")

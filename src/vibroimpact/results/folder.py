@@ -135,9 +135,9 @@ def load_result(directory: str | PathLike[str]) -> Result:
     name = SUMMARY  # the file being read: error messages name it
     try:
         summary = read_sealed(folder / name)
-        for key, words in _OTHER_FOLDERS.items():
+        for key, message in _OTHER_FOLDERS.items():
             if key in summary:
-                raise InputError(f"{folder}: {words}")
+                raise InputError(f"{folder}: {message}")
         check_types(summary)
         expected = summary.get(CHECK_SUMS, {})
         name = CASE

@@ -12,8 +12,8 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats
-from vibroimpact.cases.conditions import DropSummary
 from vibroimpact.cases.doubts import doubts
+from vibroimpact.cases.limits.conditions import DropSummary
 from vibroimpact.cases.sensor_doubts import sensor_doubts
 from vibroimpact.cases.validity.plate_mesh import plate_mesh_error
 from vibroimpact.cases.validity.plate_waves import plate_theory_error

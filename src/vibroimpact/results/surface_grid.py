@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats, Integers
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -70,7 +70,7 @@ def surface_grid(mesh: Mesh, points: int = POINTS) -> SurfaceGrid:
 
     Examples
     --------
-    >>> from vibroimpact.structures.lattice import box_mesh
+    >>> from vibroimpact.structures.finite_elements.lattice import box_mesh
     >>> grid = surface_grid(box_mesh((1.0, 1.0, 0.1), (3, 3, 1)))
     >>> grid.on_body.shape, bool(grid.on_body.all())
     ((55, 55), True)
@@ -191,7 +191,7 @@ def _surface_triangles(mesh: Mesh, step: Floats) -> tuple[Floats, csr_array, Int
     """
     from scipy.sparse import csr_array, vstack
 
-    from vibroimpact.structures.surface import facing
+    from vibroimpact.structures.finite_elements.surface import facing
 
     vertices = []
     interpolations = []

@@ -27,12 +27,14 @@ from vibroimpact.runs.chart_data import touch_height
 from vibroimpact.runs.scene import exaggeration
 from vibroimpact.units.display import fixed, text
 
-_SIZE, _DPI = (5.8, 3.3), 100
+_SIZE = (5.8, 3.3)
+_DPI = 100
 _CELLS = 22
 """Number of cells along the longer side of the plate; more would not be visible."""
 _MILLISECONDS = 70
 """Duration of a frame."""
-_MAP, _SHADES = LinearSegmentedColormap.from_list("deflection", list(DIVERGING)), 25
+_MAP = LinearSegmentedColormap.from_list("deflection", list(DIVERGING))
+_SHADES = 25
 """Colour map of the plate, and number of its shades in the palette."""
 
 
@@ -86,7 +88,8 @@ class _AnimationScene:
     """
 
     def __init__(self, result: Result, deflection: Deflection) -> None:
-        self.deflection, self.factor = deflection, exaggeration(deflection)
+        self.deflection = deflection
+        self.factor = exaggeration(deflection)
         self.radius = touch_height(result)
         self.contact = np.array(deflection.contact[0]), np.array(deflection.contact[1])
         self.touch = float(result.impacts["time_s"][0])
@@ -130,8 +133,8 @@ class _AnimationScene:
             alpha=0.7,
         )
         self.clock = figure.text(0.03, 0.93, "", fontsize=12, color=INK.light)
-        words = f"plate's deflection magnified {self.factor:g} times; ball and gap to scale"
-        figure.text(0.03, 0.045, words, fontsize=8, color=INK.light)
+        phrase = f"plate's deflection magnified {self.factor:g} times; ball and gap to scale"
+        figure.text(0.03, 0.045, phrase, fontsize=8, color=INK.light)
         figure.text(0.97, 0.045, "red up, blue down", fontsize=8, color=INK.light, ha="right")
         for artist in (self.plate, self.shadow, self.ball, self.shine):
             artist.set_animated(True)
@@ -215,5 +218,5 @@ def _show_whole(
 
 
 def _clock(since: float) -> str:
-    words = text(abs(since), "s", 3) if abs(since) < 1e-3 else f"{fixed(since / 1e-3, 2)}\u00a0ms"
-    return f"{words} {'before' if since < 0.0 else 'after'} first touch"
+    phrase = text(abs(since), "s", 3) if abs(since) < 1e-3 else f"{fixed(since / 1e-3, 2)}\u00a0ms"
+    return f"{phrase} {'before' if since < 0.0 else 'after'} first touch"

@@ -44,35 +44,36 @@ def left_out(result: Result) -> str:
 
 def _position(result: Result) -> str:
     start = text(float(result.history["position_m"][0]), "m")
-    words = f"The sphere's centre starts {start} above {level_below(result)}"
+    phrase = f"The sphere's centre starts {start} above {level_below(result)}"
     if not len(result.impacts["time_s"]):
-        return f"{words}; the sphere has not touched the {body_below(result)} when the run ends."
-    words += "."
+        return f"{phrase}; the sphere has not touched the {body_below(result)} when the run ends."
+    phrase += "."
     deepest = int(np.argmax(result.impacts["max_indentation_m"]))
     if len(contacts_with_duration(result)):
         depth = text(float(result.impacts["max_indentation_m"][deepest]), "m")
-        words += f" The largest indentation, {depth}, is that of impact {deepest + 1}."
+        phrase += f" The largest indentation, {depth}, is that of impact {deepest + 1}."
     rebound = float(result.impacts["rebound_height_m"][0])
     if np.isfinite(rebound) and result.impacts["separation_speed_m_s"][0] > 0.0:
-        words += f" The first rebound takes it to {text(rebound, 'm')}."
-    return words
+        phrase += f" The first rebound takes it to {text(rebound, 'm')}."
+    return phrase
 
 
 def _force(result: Result) -> str:
-    impacts, most = result.impacts, int(np.nanargmax(result.impacts["max_force_N"]))
+    impacts = result.impacts
+    most = int(np.nanargmax(result.impacts["max_force_N"]))
     lead = float(impacts["time_of_max_indentation_s"][most] - impacts["time_of_max_force_s"][most])
-    words = (
+    phrase = (
         f"The largest force, {impact_text(result, most, 'max_force_N', 'N')}, "
         f"acts in impact {most + 1}"
     )
     if lead > 0.001 * impacts["duration_s"][most]:
         causes = ["damping adds to the force during loading"] if _loses_in_contact(result) else []
         causes += ["the sphere vibrates"] if "sphere" in result.peaks else []
-        words += (
+        phrase += (
             f", {text(lead, 's', 3)} before the largest indentation: "
             f"{', and '.join(causes)}".removesuffix(": ")
         )
-    return f"{words}. {_in_whole_run(result)}".strip()
+    return f"{phrase}. {_in_whole_run(result)}".strip()
 
 
 def _loses_in_contact(result: Result) -> bool:
@@ -124,11 +125,11 @@ def _acceleration(result: Result) -> str:
 
 
 def _loops(result: Result) -> str:
-    found = contacts_with_duration(result)
-    if result.impacts["separation_speed_m_s"][found[-1]] == 0.0:
+    contacts = contacts_with_duration(result)
+    if result.impacts["separation_speed_m_s"][contacts[-1]] == 0.0:
         below = body_below(result)
         return (
-            f"In impact {found[-1] + 1} the sphere does not leave the {below} again; its curve "
+            f"In impact {contacts[-1] + 1} the sphere does not leave the {below} again; its curve "
             "ends where that is certain."
         )
     if not _loses_in_contact(result) and "sphere" in result.peaks:
@@ -139,7 +140,7 @@ def _loops(result: Result) -> str:
     if not _loses_in_contact(result):
         return "Loading and unloading coincide: no energy is lost in contact."
     first, last = (
-        impact_text(result, impact, "energy_lost_J", "J") for impact in (found[0], found[-1])
+        impact_text(result, impact, "energy_lost_J", "J") for impact in (contacts[0], contacts[-1])
     )
     also = (
         " and the energy that the sphere's vibration took up. Lost"
@@ -148,36 +149,36 @@ def _loops(result: Result) -> str:
     )
     if result.deformation.get("treatment") == "identified":
         also = " and the energy stored in the local element at release. Lost"
-    words = (
+    phrase = (
         f"The area that a loop encloses is the energy lost in that contact{also}: {first} in "
-        f"impact {found[0] + 1}"
+        f"impact {contacts[0] + 1}"
     )
-    return f"{words}, {last} in impact {found[-1] + 1}." if len(found) > 1 else f"{words}."
+    return f"{phrase}, {last} in impact {contacts[-1] + 1}." if len(contacts) > 1 else f"{phrase}."
 
 
 def _energy(result: Result) -> str:
     put_in = result.energy["input_J"]
     lost = energy_text(result, "contact_dissipated_J", "plastic_work_J")
-    words = f"Of {text(put_in, 'J')} put in, {lost} is lost in contact by the end."
+    phrase = f"Of {text(put_in, 'J')} put in, {lost} is lost in contact by the end."
     if "friction_J" in result.energy:
         friction = energy_text(result, "friction_J")
-        words = (
+        phrase = (
             f"Of {text(put_in, 'J')} put in, {lost} is lost in contact along the normal by the "
             f"end, and {friction} by friction."
         )
-    words += _vibration(result)
+    phrase += _vibration(result)
     if result.energy.get("drive_J"):
-        words += (
+        phrase += (
             f" The moving plate {'added' if result.energy['drive_J'] < 0.0 else 'removed'} "
             f"{text(abs(result.energy['drive_J']), 'J')}."
         )
     if np.min(result.history["potential_J"]) < -0.01 * put_in:
-        words += (
+        phrase += (
             " Below the height of first touch the potential energy is negative; the other bands "
             "then begin below zero."
         )
     return (
-        words + " The bands add up to the energy put "
+        phrase + " The bands add up to the energy put "
         f"in{' and the work of the plate' if 'drive_J' in result.energy else ''} at all times."
     )
 
@@ -206,12 +207,12 @@ def _vibration(result: Result) -> str:
     where = f"the {kind} of both" if len(bodies) > 1 else next(iter(bodies))
     names = [name for entries in bodies.values() for name in entries if name in result.energy]
     still = sum(abs(result.energy[name]) for name in names)
-    left = energy_text(result, *names) if still > least else f"less than {text(least, 'J', 1)}"
+    vibration = energy_text(result, *names) if still > least else f"less than {text(least, 'J', 1)}"
     damped = (
         "The damping of the bodies dissipated "
         f"{energy_text(result, 'sphere_damping_J', 'plate_damping_J')}, and "
     )
-    remains = f"{left} remains in {where}."
+    remains = f"{vibration} remains in {where}."
     return f" {damped}{remains}" if result.peaks else f" At the end {remains}"
 
 
@@ -219,8 +220,9 @@ def _in_whole_run(result: Result) -> str:
     """Return a sentence stating that contacts are too short to be resolved in the whole
     run; empty if they take over 2 % of it.
     """
-    found, span = contacts_with_duration(result), result.history["time_s"][-1]
-    part = float(np.sum(result.impacts["duration_s"][found])) / span
+    contacts = contacts_with_duration(result)
+    span = result.history["time_s"][-1]
+    part = float(np.sum(result.impacts["duration_s"][contacts])) / span
     if part > 0.02:
         return ""
     return (
@@ -231,24 +233,23 @@ def _in_whole_run(result: Result) -> str:
 
 def sphere_energy_caption(result: Result) -> str:
     """Return the caption of the figure of the sphere's energies."""
-    history, put_in = result.history, result.energy["input_J"]
-    words = (
+    history = result.history
+    put_in = result.energy["input_J"]
+    sentences = (
         "The largest kinetic energy of the sphere's centre is "
         f"{text(float(history['kinetic_J'].max()), 'J')}."
     )
     if "sphere" not in result.peaks:
-        return f"{words} The sphere has no modes in this run."
-    strain, left = (
-        float(history["sphere_strain_J"].max()),
-        _after_first(result, "sphere_strain_J", "sphere_vibration_J"),
-    )
-    words += (
+        return f"{sentences} The sphere has no modes in this run."
+    strain = float(history["sphere_strain_J"].max())
+    vibration = _after_first(result, "sphere_strain_J", "sphere_vibration_J")
+    sentences += (
         f" The strain energy of its modes is at most {_part(strain, put_in)}; its energy "
-        f"of vibration at the first release is {_part(left, put_in)}."
+        f"of vibration at the first release is {_part(vibration, put_in)}."
     )
     turning = float(history["sphere_rotational_J"].max())
     return (
-        f"{words} The energy of its rotation is at most "
+        f"{sentences} The energy of its rotation is at most "
         f"{text(max(turning, 1e-15 * put_in), 'J', 2)}."
     )
 
@@ -262,35 +263,36 @@ def plate_motion_caption(result: Result) -> str:
         ("max_acceleration_m_s2", "m/s2"),
     )
     most = [text(float(np.max(peaks[name])), unit) for name, unit in names]
-    there = text(float(np.abs(result.history["plate_deflection_m"]).max()), "m")
-    words = (
+    deflection = text(float(np.abs(result.history["plate_deflection_m"]).max()), "m")
+    sentences = (
         f"The plate's centre of mass moves by up to {most[0]}, with up to {most[1]} and "
-        f"{most[2]}; the contact point by up to {there}."
+        f"{most[2]}; the contact point by up to {deflection}."
     )
     lowest = result.frequencies("plate")[0]
     periods = lowest * float(result.impacts["duration_s"][0])
     return (
-        f"{words} The first impact lasts {digits(periods, 2)} periods of the lowest mode, of "
+        f"{sentences} The first impact lasts {digits(periods, 2)} periods of the lowest mode, of "
         f"{digits(lowest)}\u00a0Hz."
     )
 
 
 def plate_energy_caption(result: Result) -> str:
     """Return the caption of the figure of the plate's energies."""
-    peaks, put_in = result.peaks["plate"], result.energy["input_J"]
+    peaks = result.peaks["plate"]
+    put_in = result.energy["input_J"]
     kinetic, strain = (
         _part(float(np.max(peaks[name])), put_in)
         for name in ("max_kinetic_energy_J", "max_strain_energy_J")
     )
     change = text(float(np.abs(result.history["plate_potential_J"]).max()), "J")
-    words = (
+    sentences = (
         f"At most {kinetic} of the energy put in is kinetic energy of the plate, and {strain} "
         "strain energy."
     )
     if not result.history["plate_potential_J"].any():  # without gravity
-        return words
+        return sentences
     return (
-        f"{words} Its potential energy changes by up to {change}, which the strain energy due "
+        f"{sentences} Its potential energy changes by up to {change}, which the strain energy due "
         "to its own weight balances."
     )
 
@@ -326,30 +328,29 @@ _FILTERS = {
 def sensor_caption(result: Result, name: str) -> str:
     """Return the caption of the figure of a sensor."""
     signal = result.signals[name]
-    sensor, part = signal.sensor, first_response(result, name)
-    words = (
+    sensor = signal.sensor
+    part = first_response(result, name)
+    sentences = (
         f"Largest magnitude {text(signal.largest, sensor.unit)}, of {len(signal.value)} "
         f"samples at {digits(sensor.rate)}"
         f"\u00a0Hz, {_FILTERS[sensor.filter]}."
     )
     if signal.overload_time > 0.0:
-        words += " Its accelerometer is overloaded: values beyond its range are clipped"
-        words += (
+        sentences += " Its accelerometer is overloaded: values beyond its range are clipped"
+        sentences += (
             "." if sensor.filter == "none" else " before the filter, which may overshoot the range."
         )
     values = signal.value[part]
     if len(values) < 4 or not np.any(values):
-        return words
-    found = amplitude_spectrum(values, sensor.rate)
-    top, ticks = (
-        1 + int(found.amplitude[1:].argmax()),
-        "; ticks mark the plate's modes" if result.frequencies("plate") else "",
-    )
+        return sentences
+    spectrum = amplitude_spectrum(values, sensor.rate)
+    top = 1 + int(spectrum.amplitude[1:].argmax())
+    ticks = "; ticks mark the plate's modes" if result.frequencies("plate") else ""
     return (
-        f"{words} The spectrum is one-sided, of {text(found.span, 's', 3)} from the first "
+        f"{sentences} The spectrum is one-sided, of {text(spectrum.span, 's', 3)} from the first "
         "touch on, with the falling half of a Hann "
         f"window, scaled to the amplitude of a steady sinusoid. Its maximum lies at "
-        f"{digits(float(found.frequency[top]), 3)}\u00a0Hz{ticks}."
+        f"{digits(float(spectrum.frequency[top]), 3)}\u00a0Hz{ticks}."
     )
 
 
@@ -382,42 +383,43 @@ def _along_plate(result: Result) -> str:
         for what, entry in (("air", "air_J"), ("the liquid", "liquid_J"))
         if entry in result.energy
     ]
-    words = (
+    phrase = (
         f"Along the plate the drag of {drag[0]} slows the sphere between impacts" if drag else ""
     )
-    words = words or "Along the plate the sphere moves freely between impacts"
+    phrase = phrase or "Along the plate the sphere moves freely between impacts"
     if friction is None:
-        return f"{words}; there is no friction."
-    words += (
+        return f"{phrase}; there is no friction."
+    phrase += (
         f"; in contact, friction ({friction['law']}, coefficient "
         f"{float(friction['coefficient']):g}) acts on it."
     )
     ratio = result.impacts["tangential_restitution"]
     if len(ratio) and np.isfinite(ratio[0]):
-        words += f" The tangential restitution of impact 1 is {fixed(float(ratio[0]), 4)}."
-    return words
+        phrase += f" The tangential restitution of impact 1 is {fixed(float(ratio[0]), 4)}."
+    return phrase
 
 
 def _path(result: Result) -> str:
-    impacts, history = result.impacts, result.history
-    words = "Seen from above, to scale, with the sphere at its final position"
+    impacts = result.impacts
+    history = result.history
+    phrase = "Seen from above, to scale, with the sphere at its final position"
     if result.case.get("plate", {}).get("inclination"):
-        words += ", and +x downhill"
+        phrase += ", and +x downhill"
     number = len(impacts["time_s"])
     if number > 1:
         first, last = (
             np.array([impacts[f"position_{axis}_m"][place] for axis in "xy"]) for place in (0, -1)
         )
-        words += (
+        phrase += (
             f". From impact 1 to impact {number} it moves "
             f"{text(float(np.hypot(*(last - first))), 'm')}"
         )
     elif not number:
-        words += ". It has not touched the plate"
+        phrase += ". It has not touched the plate"
     length = float(
         np.hypot(np.diff(history["position_x_m"]), np.diff(history["position_y_m"])).sum()
     )
-    return f"{words}; the length of its path over the plate is {text(length, 'm')}."
+    return f"{phrase}; the length of its path over the plate is {text(length, 'm')}."
 
 
 _WRITERS = {

@@ -10,8 +10,8 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.costs import describe_costs
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of, first_restitution
-from vibroimpact.cases.pair import contact_pair
-from vibroimpact.cases.rigid_problem import (
+from vibroimpact.cases.rigid.pair import contact_pair
+from vibroimpact.cases.rigid.rigid_problem import (
     contact_laws_of,
     elastic_names,
     mass_of_sphere,
@@ -33,12 +33,10 @@ def case_document(case: Case, aside: Container[str] = ()) -> dict[str, Any]:
     aside : container of str
         Keys of the case whose implausible values are reported elsewhere, and not doubted here.
     """
-    law, pair, speed, expected = (
-        contact_laws_of(case)[0],
-        contact_pair(case),
-        touch_speed(case),
-        expected_of(case),
-    )
+    law = contact_laws_of(case)[0]
+    pair = contact_pair(case)
+    speed = touch_speed(case)
+    expected = expected_of(case)
     resolved = resolved_case(case)
     restitution = first_restitution(case)
     return {

@@ -18,10 +18,10 @@ from vibroimpact.cases.fields.fluid import fluid_words
 from vibroimpact.cases.fields.quantities import quantity_of
 from vibroimpact.cases.fields.section import Section
 from vibroimpact.cases.fields.sensor import SensorSection
-from vibroimpact.cases.oblique import friction_law_of, is_oblique
-from vibroimpact.cases.pair import ball_of, contact_pair, is_free_sphere, sphere_density
-from vibroimpact.cases.plate_motion import motion_length
-from vibroimpact.cases.rigid_problem import (
+from vibroimpact.cases.rigid.oblique import friction_law_of, is_oblique
+from vibroimpact.cases.rigid.pair import ball_of, contact_pair, is_free_sphere, sphere_density
+from vibroimpact.cases.rigid.plate_motion import motion_length
+from vibroimpact.cases.rigid.rigid_problem import (
     by_speed_of,
     contact_laws_of,
     deforms,
@@ -69,8 +69,12 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     aside : container of str
         Keys of the case whose implausible values are reported elsewhere, and not doubted here.
     """
-    laws, pair, speed = contact_laws_of(case), contact_pair(case), touch_speed(case)
-    mass, radius, gravity = mass_of_sphere(case), case.sphere.radius, case.drop.gravity
+    laws = contact_laws_of(case)
+    pair = contact_pair(case)
+    speed = touch_speed(case)
+    mass = mass_of_sphere(case)
+    radius = case.sphere.radius
+    gravity = case.drop.gravity
     rows: list[tuple[str, str]] = [
         (
             "sphere",
@@ -121,11 +125,11 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
         stokes = table.liquid().stokes_number(
             speed, case.sphere.radius, sphere_density(case.sphere)
         )
-        left = (
+        damping = (
             f"at the first touch the Stokes number is {stokes:.4g}, and "
             f"{restitution_kept(stokes):.5g} of the restitution remains"
         )
-        rows.append(("liquid", f"{fluid_words(table.model_dump())}: {left}"))
+        rows.append(("liquid", f"{fluid_words(table.model_dump())}: {damping}"))
     if (friction := friction_law_of(case)) is not None:
         rows.append(("friction law", f"{friction.name}: {friction.equation}"))
         rows += [
@@ -163,13 +167,14 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
         numbers = f"indentation {expected.depth:.4g} m, force {expected.force:.4g} N"
         rows.append(("without losses" + ("" if rigid else ", rigid"), numbers))
     rows += [("" if number else "cost", line) for number, line in enumerate(describe_costs(case))]
-    found = doubts(resolved_case(case), expected, aside)
-    return Group(Text(case.name or "a drop", style="bold"), facts(rows), *warning_lines(found))
+    warnings = doubts(resolved_case(case), expected, aside)
+    return Group(Text(case.name or "a drop", style="bold"), facts(rows), *warning_lines(warnings))
 
 
 def _ends_of_a_run(case: Case) -> list[str]:
     """Return what ends a run of a case, whichever comes first."""
-    number, duration = impact_limit(case), run_duration(case)
+    number = impact_limit(case)
+    duration = run_duration(case)
     ends = ["at rest"] if case.drop.gravity else ["when it flies off for good"]
     ends += [f"after {number} impact{'' if number == 1 else 's'}"] if number else []
     ends += [f"at {duration:g} s"] if duration else []
@@ -187,7 +192,9 @@ def _ball_rows(case: Case) -> list[tuple[str, str]]:
     """Return rows on a sphere whose mass or moment of inertia is given: its mean density,
     and how it turns.
     """
-    sphere, ball, lines = case.sphere, ball_of(case.sphere), []
+    sphere = case.sphere
+    ball = ball_of(case.sphere)
+    lines = []
     if sphere.mass is not None:
         ratio = sphere_density(sphere) / sphere.material.density
         lines.append(
@@ -231,14 +238,14 @@ def _motion_rows(case: Case) -> list[tuple[str, str]]:
     strength = (
         float(motion.amplitude or 0.0) * (2.0 * math.pi * float(motion.frequency or 0.0)) ** 2
     )
-    words = (
+    phrase = (
         f"amplitude {motion.amplitude:g} m, frequency {motion.frequency:g} Hz, phase "
         f"{motion.phase:g} rad, {along}"
     )
     return [
         (
             "motion of supports",
-            f"{words}: up to {strength:.4g} m/s2, {strength / STANDARD_GRAVITY:.4g} times "
+            f"{phrase}: up to {strength:.4g} m/s2, {strength / STANDARD_GRAVITY:.4g} times "
             "standard gravity",
         )
     ]
@@ -257,21 +264,21 @@ def _coupling_rows(case: Case) -> list[tuple[str, str]]:
     if not deforms(case):
         return []
     local = case.contact.local
-    words: list[str] = []
+    phrase: list[str] = []
     if elastic_names(case) or local.local_compliance is not None:
-        words.append(local.local_compliance or "consistent, by default")
+        phrase.append(local.local_compliance or "consistent, by default")
     if local.finite_sphere:
-        words.append("Hertz's half space corrected to a sphere of finite size")
+        phrase.append("Hertz's half space corrected to a sphere of finite size")
     if local.local_stiffness is not None:
-        words.append(
+        phrase.append(
             f"local element of {local.local_stiffness:.6g} N/m and {local.local_damping:.6g} N s/m"
         )
     if local.measured is not None:
         where = "on a rigid plate" if local.measured.plate == "rigid" else "on this plate"
-        words.append(
+        phrase.append(
             f"local element found from a largest force of {local.measured.max_force:.6g} N {where}"
         )
-    rows = [("local compliance", "; ".join(words))] if words else []
+    rows = [("local compliance", "; ".join(phrase))] if phrase else []
     for sensor in case.sensors:
         place = (
             sensor.position
@@ -283,14 +290,14 @@ def _coupling_rows(case: Case) -> list[tuple[str, str]]:
             if sensor.subject == "support"
             else f"at {place}, {sensor.face} face"
         )
-        words = [
+        phrase = [
             f"{sensor.quantity} {where}",
             *_instrument(sensor),
             f"{sensor.rate:g} Hz",
             _filter(sensor),
             *_electronics(sensor),
         ]
-        rows.append((f"sensor {sensor.name}", ", ".join(words)))
+        rows.append((f"sensor {sensor.name}", ", ".join(phrase)))
     return rows
 
 
@@ -299,10 +306,10 @@ def _instrument(sensor: SensorSection) -> list[str]:
     if sensor.instrument is None:
         return []
     stated = sensor.instrument_in_case()
-    words = "; ".join(
+    phrase = "; ".join(
         _accelerometer(stated) if isinstance(stated, Accelerometer) else _properties(sensor.table)
     )
-    return [f"by {instruments()[sensor.instrument].noun} ({words or 'ideal'})"]
+    return [f"by {instruments()[sensor.instrument].noun} ({phrase or 'ideal'})"]
 
 
 def _accelerometer(meter: Accelerometer) -> list[str]:
@@ -329,30 +336,33 @@ def _properties(table: Section | None) -> list[str]:
         (name, getattr(table, name), quantity_of(info))
         for name, info in type(table).model_fields.items()
     ]
-    words = [
+    phrase = [
         (name.replace("_", " "), value, "" if quantity is None else quantity.unit.replace("^", ""))
         for name, value, quantity in given
     ]
-    return [f"{name} {value:g} {unit}".rstrip() for name, value, unit in words if value is not None]
+    return [
+        f"{name} {value:g} {unit}".rstrip() for name, value, unit in phrase if value is not None
+    ]
 
 
 def _electronics(sensor: SensorSection) -> list[str]:
     """Return descriptions of a sensor's amplifier and converter."""
-    words, unit = [], sensor.sensor().unit
+    phrase = []
+    unit = sensor.sensor().unit
     if (amplifier := sensor.amplifier) is not None:
-        heard = (
+        hum = (
             f"hum of {amplifier.hum:g} {unit} at {amplifier.mains:g} Hz"
             if amplifier.hum
             else "no hum"
         )
-        words.append(
-            f"amplifier (gain {amplifier.gain:g}; noise {amplifier.noise:g} {unit}; {heard})"
+        phrase.append(
+            f"amplifier (gain {amplifier.gain:g}; noise {amplifier.noise:g} {unit}; {hum})"
         )
     if (converter := sensor.converter) is not None:
-        words.append(
+        phrase.append(
             f"converter (range {converter.range:g} {unit}; {converter.bits or 'unlimited'} bits)"
         )
-    return words
+    return phrase
 
 
 def _filter(sensor: SensorSection) -> str:

@@ -33,8 +33,8 @@ def contacts_with_duration(result: Result) -> Indices:
     """Return the indices of the impacts with a finite contact duration, counted from 0;
     empty for an instantaneous law.
     """
-    found: Indices = np.flatnonzero(result.impacts["duration_s"] > 0.0)
-    return found
+    contacts: Indices = np.flatnonzero(result.impacts["duration_s"] > 0.0)
+    return contacts
 
 
 def enlarged_contacts(result: Result) -> Indices:
@@ -42,8 +42,8 @@ def enlarged_contacts(result: Result) -> Indices:
     first ones shorter than half of the run.
     """
     span = result.history["time_s"][-1] - result.history["time_s"][0]
-    found = contacts_with_duration(result)
-    short: Indices = found[result.impacts["duration_s"][found] < 0.5 * span]
+    contacts = contacts_with_duration(result)
+    short: Indices = contacts[result.impacts["duration_s"][contacts] < 0.5 * span]
     return short[:MOST_VIEWS]
 
 
@@ -69,19 +69,18 @@ def views_of_contacts(
     level, level_label : float and str, optional
         Value from which the vertical axis counts in the views, and its label.
     """
-    found = []
+    views = []
     for impact in enlarged_contacts(result).tolist():
-        touch, duration = (
-            float(result.impacts["time_s"][impact]),
-            float(result.impacts["duration_s"][impact]),
-        )
+        touch = float(result.impacts["time_s"][impact])
+        duration = float(result.impacts["duration_s"][impact])
         before, after = (
             (MARGIN * duration, (1.0 + MARGIN) * duration)
             if span is None
             else (0.06 * span(impact), span(impact))
         )
-        name, since = f"Impact {impact + 1}", f"Time since first touch of impact {impact + 1}"
-        found.append(
+        name = f"Impact {impact + 1}"
+        since = f"Time since first touch of impact {impact + 1}"
+        views.append(
             View(
                 name,
                 touch - before,
@@ -93,12 +92,13 @@ def views_of_contacts(
                 level_label,
             )
         )
-    return tuple(found)
+    return tuple(views)
 
 
 def time_axis(result: Result, views: tuple[View, ...]) -> Axis:
     """Return the axis of time of a chart, over the whole run with room for symbols at its ends."""
-    start, end = float(result.history["time_s"][0]), float(result.history["time_s"][-1])
+    start = float(result.history["time_s"][0])
+    end = float(result.history["time_s"][-1])
     room = 0.01 * (end - start)
     return Axis("Time", "s", range=(start - room, end + room) if room > 0.0 else None, views=views)
 
@@ -128,7 +128,8 @@ def contact_history(result: Result, impact: int) -> dict[str, Floats]:
     drawn = {name: result.history[name] for name in ("time_s", "force_N", "indentation_m")}
     part = history_window(drawn, touch, touch + result.impacts["duration_s"][impact])
     away = np.abs(part["indentation_m"]) > 1e-9 * np.max(np.abs(part["indentation_m"]))
-    first, last = int(away[1] and not away[0]), len(away) - int(away[-2] and not away[-1])
+    first = int(away[1] and not away[0])
+    last = len(away) - int(away[-2] and not away[-1])
     if result.impacts["separation_speed_m_s"][impact] == 0.0:
         # the sphere stays: the last point is its state of rest, which is not the end of the
         # computed motion
@@ -141,10 +142,8 @@ def history_window(history: Mapping[str, Floats], start: float, end: float) -> d
     that lies within the run.
     """
     time = history["time_s"]
-    first, last = (
-        np.searchsorted(time, start, side="left"),
-        np.searchsorted(time, end, side="right"),
-    )
+    first = np.searchsorted(time, start, side="left")
+    last = np.searchsorted(time, end, side="right")
     before = [start] if first < len(time) and time[0] < start < time[first] else []
     after = [end] if last > 0 and time[last - 1] < end < time[-1] else []
 
@@ -200,8 +199,8 @@ def drawn_history(result: Result) -> Mapping[str, Floats]:
 
 
 def _visible(x: Floats, y: Floats) -> Indices:
-    found = visible_points(len(x), lambda first, last: (x[first:last], y[first:last]))
-    return np.arange(len(x)) if found is None else found
+    points = visible_points(len(x), lambda first, last: (x[first:last], y[first:last]))
+    return np.arange(len(x)) if points is None else points
 
 
 def drawn_signal(signal: Signal, first: int, last: int) -> tuple[Floats, Floats]:

@@ -15,15 +15,18 @@ from vibroimpact.results.result import Result
 from vibroimpact.runs.supports import Extent, plate_extent, support_outlines
 from vibroimpact.units.display import digits, multiple, text
 
-_COLUMNS, _ROWS = 3, 2
+_COLUMNS = 3
+_ROWS = 2
 
 _MOST_NAMED = 12
 """Places of sensors that are named; the names of more would cover each other."""
 
-_MOST_LETTERS, _FEWEST_LETTERS = 20, 8
+_MOST_LETTERS = 20
+_FEWEST_LETTERS = 8
 """Letters of a name: the most, and the fewest to which it is shortened."""
 
-_ACROSS, _SHAPE = 38, 1.6
+_ACROSS = 38
+_SHAPE = 1.6
 """Letters that fit across a map in print, and its length over its width from which on a
 map is narrower than its place.
 """
@@ -38,8 +41,11 @@ def deflection_chart(result: Result, caption: str) -> Chart:
     """
     deflection = result.deflection
     assert deflection is not None  # checked by the caller
-    touch, frames = float(result.impacts["time_s"][0]), chosen_frames(result, deflection)
-    across, up, scale = Axis("x", "m"), Axis("y", "m"), Axis("Deflection, upwards", "m")
+    touch = float(result.impacts["time_s"][0])
+    frames = chosen_frames(result, deflection)
+    across = Axis("x", "m")
+    up = Axis("y", "m")
+    scale = Axis("Deflection, upwards", "m")
     most = float(np.nanmax(np.abs(deflection.height[frames])))
     held = on_supports(support_outlines(result, edges=False), deflection.x, deflection.y)
     unit = multiple("m", most)
@@ -139,17 +145,18 @@ def _label(place: tuple[float, float], name: str, extent: Extent | None) -> Labe
     if extent is None:
         return Label(*place, shortened(name, _MOST_LETTERS), "left")
     (left, right), (front, back) = extent.x, extent.y
-    before, after = place[0] - left, right - place[0]
+    before = place[0] - left
+    after = right - place[0]
     across = _ACROSS * min(1.0, _SHAPE * (right - left) / (back - front))
     room = min(int(across * max(before, after) / (right - left)) - 1, _MOST_LETTERS)
-    words = name if len(name) <= room else shortened(name, room) if room >= _FEWEST_LETTERS else ""
-    return Label(*place, words, "left" if before <= after else "right")
+    phrase = name if len(name) <= room else shortened(name, room) if room >= _FEWEST_LETTERS else ""
+    return Label(*place, phrase, "left" if before <= after else "right")
 
 
 def sensor_places(result: Result) -> list[tuple[str, float, float]]:
     """Return name, x and y [m] of the sensors whose positions the case gives as coordinates."""
     sensors = result.case.get("sensors", [])
-    placed = [(one["name"], one["position"]) for one in sensors]
+    placed = [(sensor["name"], sensor["position"]) for sensor in sensors]
     return [
         (name, float(place[0]), float(place[1]))
         for name, place in placed

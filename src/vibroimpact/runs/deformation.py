@@ -60,8 +60,9 @@ def counted_twice(result: Result) -> float:
 
 def deformation_rows(result: Result) -> list[tuple[str, str]]:
     """Return the rows of a table on deformation: description, and value with unit."""
-    facts, rows = result.deformation, []
-    for name, words in (
+    facts = result.deformation
+    rows = []
+    for name, phrase in (
         (
             "plate_static_compliance_m_N",
             "Static compliance of the plate at the contact point, without rigid-body motion "
@@ -81,7 +82,7 @@ def deformation_rows(result: Result) -> list[tuple[str, str]]:
         ),
     ):
         if name in facts:
-            rows.append((words, f"{digits(float(facts[name]) / 1e-9)}\u00a0nm/N"))
+            rows.append((phrase, f"{digits(float(facts[name]) / 1e-9)}\u00a0nm/N"))
     if not math.isnan(twice := counted_twice(result)):
         rows.append(
             (
@@ -113,14 +114,14 @@ def deformation_rows(result: Result) -> list[tuple[str, str]]:
                     f"{digits(100.0 * part, 2)}\u00a0%",
                 )
             )
-    for words, error in (
+    for phrase, error in (
         ("the mesh of the plate", plate_mesh_error),
         ("the limits of plate elements", plate_theory_error),
     ):
         if math.isfinite(part := error(facts, result.impacts)):
             rows.append(
                 (
-                    f"Estimated error of the largest force due to {words}",
+                    f"Estimated error of the largest force due to {phrase}",
                     f"{digits(100.0 * part, 2)}\u00a0%",
                 )
             )
@@ -131,7 +132,8 @@ def _local_element(result: Result) -> list[tuple[str, str]]:
     """Return rows of stiffness and damping of the local element, identified or given in
     the case; empty without one.
     """
-    contact, facts = result.case.get("contact", {}), result.deformation
+    contact = result.case.get("contact", {})
+    facts = result.deformation
     stiffness = facts.get("local_stiffness_N_m", contact.get("local_stiffness"))
     damping = facts.get("local_damping_N_s_m", contact.get("local_damping"))
     if stiffness is None or damping is None:
@@ -140,8 +142,13 @@ def _local_element(result: Result) -> list[tuple[str, str]]:
         facts.get(f"local_{name}_deviation_{unit}")
         for name, unit in (("stiffness", "N_m"), ("damping", "N_s_m"))
     ]
-    told = ["" if deviation is None else f" ± {digits(float(deviation), 2)}" for deviation in known]
+    deviations = [
+        "" if deviation is None else f" ± {digits(float(deviation), 2)}" for deviation in known
+    ]
     return [
-        ("Stiffness of the local element", f"{digits(float(stiffness))}{told[0]}\u00a0N/m"),
-        ("Damping of the local element", f"{digits(float(damping))}{told[1]}\u00a0N\u00a0s/m"),
+        ("Stiffness of the local element", f"{digits(float(stiffness))}{deviations[0]}\u00a0N/m"),
+        (
+            "Damping of the local element",
+            f"{digits(float(damping))}{deviations[1]}\u00a0N\u00a0s/m",
+        ),
     ]

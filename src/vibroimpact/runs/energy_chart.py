@@ -54,7 +54,8 @@ def ledger_chart(result: Result, history: Mapping[str, Floats], caption: str) ->
     caption : str
         The caption.
     """
-    bands, put_in = bands_of(history), result.energy["input_J"]
+    bands = bands_of(history)
+    put_in = result.energy["input_J"]
     layers = []
     for name, role in _ROLES.items():
         if name in bands and np.any(bands[name] > 1e-6 * put_in):
@@ -102,7 +103,8 @@ def _drawn_points(result: Result, history: Mapping[str, Floats]) -> Indices:
     """Return the indices of the points of the history to draw: evenly spaced ones, and
     those at touch and release of the first contacts.
     """
-    time, touch = history["time_s"], result.impacts["time_s"][:45]
+    time = history["time_s"]
+    touch = result.impacts["time_s"][:45]
     release = touch + result.impacts["duration_s"][:45]
     count = min(max(4 * len(touch), _COLUMNS), 2 * _COLUMNS)
     spread = np.searchsorted(time, np.linspace(time[0], time[-1], count))

@@ -24,9 +24,9 @@ def loops_chart(result: Result, caption: str) -> Chart:
     """Return the chart of contact force over indentation, with the first contacts named
     by impact and approach speed.
     """
-    found = contacts_with_duration(result)
-    named = found if len(found) <= SERIES else found[:_NAMED]
-    marks: list[Line | Points] = _other_loops(result, found[len(named) :])
+    contacts = contacts_with_duration(result)
+    named = contacts if len(contacts) <= SERIES else contacts[:_NAMED]
+    marks: list[Line | Points] = _other_loops(result, contacts[len(named) :])
     for number, impact in enumerate(named):
         name = f"impact {impact + 1}, {text(result.impacts['approach_speed_m_s'][impact], 'm/s')}"
         marks.append(Line(*_loop(result, impact), name, series(number)))

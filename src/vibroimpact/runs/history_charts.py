@@ -95,8 +95,8 @@ def history_chart(
                 "reference",
             )
         )
-    for (name, found), role in zip(quantity.marks, ("mark", "other mark"), strict=False):
-        times, values = found(result)
+    for (name, marks_of), role in zip(quantity.marks, ("mark", "other mark"), strict=False):
+        times, values = marks_of(result)
         if len(times):
             marks.append(Points(times, values, name, role, _names(result, times)))
     value = Axis(quantity.label, HISTORY_COLUMNS[quantity.column].unit)
@@ -127,7 +127,8 @@ def tops_of_rebounds(result: Result) -> tuple[Floats, Floats]:
     """Return times [s] and heights of the sphere's centre [m] at the apex of each rebound
     within the run.
     """
-    impacts, down = result.impacts, gravity_of(result)
+    impacts = result.impacts
+    down = gravity_of(result)
     if down <= 0.0:
         return np.empty(0), np.empty(0)
     release = impacts["time_s"] + impacts["duration_s"]
@@ -152,22 +153,25 @@ def _largest_indentations(result: Result) -> tuple[Floats, Floats]:
 
 
 def _force_peaks(result: Result) -> tuple[Floats, Floats]:
-    found = np.isfinite(result.impacts["max_force_N"])
-    return result.impacts["time_of_max_force_s"][found], result.impacts["max_force_N"][found]
+    has_force = np.isfinite(result.impacts["max_force_N"])
+    return result.impacts["time_of_max_force_s"][has_force], result.impacts["max_force_N"][
+        has_force
+    ]
 
 
 def _acceleration_peaks(result: Result) -> tuple[Floats, Floats]:
     # a contact of less than gravitational acceleration has its largest magnitude in flight, not at
     # the largest force
-    found = result.impacts["max_acceleration_m_s2"] > gravity_of(result)
-    return result.impacts["time_of_max_force_s"][found], result.impacts["max_acceleration_m_s2"][
-        found
-    ]
+    in_contact = result.impacts["max_acceleration_m_s2"] > gravity_of(result)
+    return result.impacts["time_of_max_force_s"][in_contact], result.impacts[
+        "max_acceleration_m_s2"
+    ][in_contact]
 
 
 def _touch_and_release(result: Result) -> tuple[Floats, Floats]:
     impacts = result.impacts
-    touch, release = impacts["time_s"], impacts["time_s"] + impacts["duration_s"]
+    touch = impacts["time_s"]
+    release = impacts["time_s"] + impacts["duration_s"]
     before = _at(result, "surface_velocity_m_s", touch) - impacts["approach_speed_m_s"]
     after = _at(result, "surface_velocity_m_s", release) + impacts["separation_speed_m_s"]
     # in the order of time, so that pages keep them in full precision

@@ -57,7 +57,8 @@ def oblique_chart(result: Result, history: Mapping[str, Floats], caption: str) -
             f"rebound at {float(result.impacts['rebound_angle_deg'][impact]):.1f}° from the normal"
         )
 
-    time, rows = time_axis(result, views_of_contacts(result, headline=headline)), []
+    time = time_axis(result, views_of_contacts(result, headline=headline))
+    rows = []
     for title, unit, columns in _QUANTITIES:
         moving = {
             name: history[column] for name, column in columns.items() if np.any(history[column])

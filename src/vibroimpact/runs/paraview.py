@@ -14,7 +14,7 @@ from vibroimpact.results.deflection import contact_point_of, frame_times_of
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.response import Response
-    from vibroimpact.structures.mesh import Mesh
+    from vibroimpact.structures.finite_elements.mesh import Mesh
     from vibroimpact.structures.modal_model import ModalModel
 
 
@@ -72,7 +72,8 @@ def write_paraview(response: Response, folder: Path) -> None:
             ({"displacement_m": moved} for moved in _moved(plate, modal["plate"])),
         )
     if "sphere" in models:
-        sphere, offset = models["sphere"], float(response.problem.sphere.contact_offset)
+        sphere = models["sphere"]
+        offset = float(response.problem.sphere.contact_offset)
         fall = response.at(times)["position_m"] - offset
         write_vtu_series(
             _at_first_touch(response, offset),
@@ -89,9 +90,9 @@ def _moved(model: ModalModel, modal: Floats) -> Iterator[Floats]:
     """Yield the nodal displacements at each time, (nodes, 3) [m]."""
     moved = np.empty((len(modal), model.shapes.shape[1]))
     for first in range(0, moved.shape[1], _BLOCK):
-        here = slice(first, first + _BLOCK)
-        for number, one in enumerate(modal):
-            moved[number, here] = one @ model.shapes[:, here]
+        block = slice(first, first + _BLOCK)
+        for number, amplitudes in enumerate(modal):
+            moved[number, block] = amplitudes @ model.shapes[:, block]
     yield from moved.reshape(len(modal), len(model.mesh.nodes), -1)[:, :, :3]
 
 
@@ -99,7 +100,8 @@ def _at_first_touch(response: Response, offset: float) -> Mesh:
     """Return the mesh of the sphere at the position where it just touches the plate, in
     the coordinates of the plate.
     """
-    sphere, plate = response.problem.models["sphere"], response.problem.models.get("plate")
+    sphere = response.problem.models["sphere"]
+    plate = response.problem.models.get("plate")
     above = np.zeros(3)
     if plate is not None:
         above = plate.at(np.array([contact_point_of(response, plate)]))[1][0]

@@ -46,9 +46,11 @@ def path_chart(result: Result, history: Mapping[str, Floats], caption: str) -> C
     caption : str
         The caption.
     """
-    x, y = history["position_x_m"], history["position_y_m"]
+    x = history["position_x_m"]
+    y = history["position_y_m"]
     places = np.stack([result.impacts["position_x_m"], result.impacts["position_y_m"]], axis=-1)
-    radius, extent = drawn_radius(result), plate_extent(result)
+    radius = drawn_radius(result)
+    extent = plate_extent(result)
     marks: list[Mark] = []
     if extent is not None:
         (left, right), (front, back) = extent.x, extent.y
@@ -80,10 +82,8 @@ def path_chart(result: Result, history: Mapping[str, Floats], caption: str) -> C
                 )
             )
             last = place
-    low, beside = (
-        min(front, float(y.min()) - radius) - _ROOM * size,
-        max(right, float(x.max()) + radius) + _ROOM * size,
-    )
+    low = min(front, float(y.min()) - radius) - _ROOM * size
+    beside = max(right, float(x.max()) + radius) + _ROOM * size
     marks += (
         dimension((left, low), (right, low), brief(right - left, "m"), "below")
         if right > left

@@ -57,7 +57,8 @@ def sensor_chart(result: Result, chart: str, name: str, caption: str) -> Chart:
     caption : str
         The caption.
     """
-    signal, first = result.signals[name], first_response(result, name)
+    signal = result.signals[name]
+    first = first_response(result, name)
     sensor = signal.sensor
     level = Axis(sensor.quantity.capitalize(), sensor.unit)
     range_words, levels = _range(result, name)
@@ -82,27 +83,28 @@ def _range(result: Result, name: str) -> tuple[str, tuple[Level, ...]]:
     end = min(
         (
             end
-            for one in result.case.get("sensors", ())
-            if one["name"] == name
-            for end in _ends(one)
+            for sensor in result.case.get("sensors", ())
+            if sensor["name"] == name
+            for end in _ends(sensor)
         ),
         default=None,
     )
     if end is None:
         return "", ()
     scale = multiple(signal.sensor.unit, signal.largest)
-    words = f" (range ±{digits(end / scale.size, 3)} {scale.unit}"
+    phrase = f" (range ±{digits(end / scale.size, 3)} {scale.unit}"
     # drawn to the range, the signal would be too small to read
     if largest(signal.value) < _NEAR * end:
-        return f"{words}, beyond the axes)", ()
-    return f"{words})", (Level(-end, "range", "mark line"), Level(end, "range", "mark line"))
+        return f"{phrase}, beyond the axes)", ()
+    return f"{phrase})", (Level(-end, "range", "mark line"), Level(end, "range", "mark line"))
 
 
 def _ends(sensor: ResolvedSensor) -> Iterator[float]:
     """Yield the largest readings that a sensor's accelerometer and its converter permit,
     in the unit of its samples.
     """
-    meter, gain = sensor.get("accelerometer", {}), sensor.get("amplifier", {}).get("gain", 1.0)
+    meter = sensor.get("accelerometer", {})
+    gain = sensor.get("amplifier", {}).get("gain", 1.0)
     if "range" in meter:
         yield meter["range"] * meter.get("sensitivity", 1.0) * gain
     if "converter" in sensor:
@@ -111,8 +113,8 @@ def _ends(sensor: ResolvedSensor) -> Iterator[float]:
 
 def _spectrum(result: Result, name: str) -> Panel:
     signal = result.signals[name]
-    found = amplitude_spectrum(signal.value[first_response(result, name)], signal.sensor.rate)
-    most = largest(found.amplitude[1:])
+    spectrum = amplitude_spectrum(signal.value[first_response(result, name)], signal.sensor.rate)
+    most = largest(spectrum.amplitude[1:])
     modes = np.array(result.frequencies("plate"))
     modes = modes[modes < 0.5 * signal.sensor.rate]
     shown = min(0.5 * signal.sensor.rate, 1.25 * float(modes.max(initial=0.0)) or np.inf)
@@ -124,7 +126,9 @@ def _spectrum(result: Result, name: str) -> Panel:
         range=(most * 10.0**-_DECADES, 3.0 * most) if most > 0.0 else None,
     )
     line = Line(
-        found.frequency[1:], np.maximum(found.amplitude[1:], 1e-12 * most + 1e-300), role="detail"
+        spectrum.frequency[1:],
+        np.maximum(spectrum.amplitude[1:], 1e-12 * most + 1e-300),
+        role="detail",
     )
     return Panel(
         frequency,

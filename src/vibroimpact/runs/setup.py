@@ -102,16 +102,17 @@ def _contact_point(result: Result) -> tuple[float, float]:
 
 
 def _from_the_side(result: Result, extent: Extent | None) -> Panel:
-    radius, below = drawn_radius(result), result.case.get("plate", {}).get("radius")
+    radius = drawn_radius(result)
+    below = result.case.get("plate", {}).get("radius")
     if below is not None:
-        marks, half, at = _sphere_below(result, float(below)), max(float(below), 2.0 * radius), 0.0
+        marks = _sphere_below(result, float(below))
+        half = max(float(below), 2.0 * radius)
+        at = 0.0
     else:
         at = _contact_point(result)[0]
         around = extent or Extent((at - 5.0 * radius, at + 5.0 * radius), (0.0, 0.0), 1.2 * radius)
-        marks, half = (
-            _plate(result, around, dimensioned=extent is not None),
-            0.5 * (around.x[1] - around.x[0]),
-        )
+        marks = _plate(result, around, dimensioned=extent is not None)
+        half = 0.5 * (around.x[1] - around.x[0])
     high = max(3.4 * radius, 0.42 * half)
     marks += [
         Line(np.array([at, at]), np.array([0.0, high - radius]), role="dotted"),
@@ -132,10 +133,8 @@ def _sphere_below(result: Result, radius: float) -> list[Mark]:
     marks: list[Mark] = [Outline(radius * np.cos(_TURN), radius * np.sin(_TURN) - radius)]
     marks.append(Label(radius, -radius, f"radius {as_given(radius, 'm')}", "left"))
     if result.case["plate"].get("supports") != "free":
-        ground, deep = (
-            np.array([-0.6, 0.6, 0.6, -0.6]) * radius,
-            np.array([2.0, 2.0, 2.25, 2.25]) * radius,
-        )
+        ground = np.array([-0.6, 0.6, 0.6, -0.6]) * radius
+        deep = np.array([2.0, 2.0, 2.25, 2.25]) * radius
         marks.insert(0, Outline(ground, -deep, role="support"))
     return marks
 
@@ -149,10 +148,8 @@ def _plate(result: Result, extent: Extent, *, dimensioned: bool) -> list[Mark]:
     marks += supports_from_the_side(result, extent, thickness)
     if dimensioned:
         outlines = [mark for mark in marks if isinstance(mark, Outline)]
-        low, beside = (
-            min(float(one.y.min()) for one in outlines) - 0.04 * (right - left),
-            max(float(one.x.max()) for one in outlines),
-        )
+        low = min(float(outline.y.min()) for outline in outlines) - 0.04 * (right - left)
+        beside = max(float(outline.x.max()) for outline in outlines)
         marks += dimension((left, low), (right, low), as_given(right - left, "m"), "below")
         marks += (
             [Label(beside, -0.5 * thickness, f"{as_given(thickness, 'm')} thick", "left")]
@@ -171,7 +168,8 @@ def _drop_words(result: Result) -> str:
         parts = [
             float(result.impacts[name][0]) if name in result.impacts else 0.0 for name in _APPROACH
         ]
-        down, speed = parts[0], float(np.linalg.norm(parts))
+        down = parts[0]
+        speed = float(np.linalg.norm(parts))
         angle = (
             f" at {np.degrees(np.arccos(down / speed)):.4g}° from the normal"
             if down < speed
@@ -195,10 +193,8 @@ def _from_above(result: Result, extent: Extent) -> Panel:
         Outline(*outline, name="support", role="held") for outline in support_outlines(result)
     ]
     marks.append(Outline(x + radius * np.cos(_TURN), y + radius * np.sin(_TURN), role="ball"))
-    low, beside = (
-        min(front, y - radius) - 0.07 * (back - front),
-        max(right, x + radius) + 0.05 * (right - left),
-    )
+    low = min(front, y - radius) - 0.07 * (back - front)
+    beside = max(right, x + radius) + 0.05 * (right - left)
     marks += dimension((left, low), (right, low), as_given(right - left, "m"), "below")
     marks += dimension((beside, front), (beside, back), as_given(back - front, "m"), "left")
     return Panel(
@@ -207,11 +203,11 @@ def _from_above(result: Result, extent: Extent) -> Panel:
 
 
 def dimension(
-    start: tuple[float, float], end: tuple[float, float], words: str, anchor: str
+    start: tuple[float, float], end: tuple[float, float], phrase: str, anchor: str
 ) -> list[Mark]:
     """Return an arrow in both directions with words at its middle."""
     middle = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
-    return [Arrow(start, end, both=True), Label(*middle, words, anchor)]
+    return [Arrow(start, end, both=True), Label(*middle, phrase, anchor)]
 
 
 def as_given(value: float, unit: str) -> str:
@@ -270,33 +266,35 @@ def setup_rows(result: Result) -> list[tuple[str, str]]:
         rows.append(("Liquid", fluid_words(liquid)))
     if (friction := case["contact"].get("friction")) is not None:
         rows.append(("Friction", _law_words(friction)))
-    for one in case.get("sensors", ()):
-        by = f" by {instruments()[one['instrument']].noun}" if "instrument" in one else ""
-        words = (
-            f"{one['quantity']}{by} at {_place(one['position'])}, "
-            f"{as_given(float(one['rate']), 'Hz')}"
+    for sensor in case.get("sensors", ()):
+        by = f" by {instruments()[sensor['instrument']].noun}" if "instrument" in sensor else ""
+        phrase = (
+            f"{sensor['quantity']}{by} at {_place(sensor['position'])}, "
+            f"{as_given(float(sensor['rate']), 'Hz')}"
         )
-        rows.append((f"Sensor {shortened(visible(one['name']), 60)}", words))
+        rows.append((f"Sensor {shortened(visible(sensor['name']), 60)}", phrase))
     return rows
 
 
 def _motion_words(motion: Mapping[str, Any]) -> str:
     """Return the motion of the plate's supports in words."""
     if (file := motion.get("file")) is not None:
-        words = [
+        phrase = [
             f"as in {shortened(visible(Path(file).name), 60)}",
             *(["repeated"] if motion.get("repeat") else []),
         ]
     else:
-        words = [
+        phrase = [
             f"amplitude {as_given(float(motion['amplitude']), 'm')}, frequency "
             f"{as_given(float(motion['frequency']), 'Hz')}"
         ]
-        words += [f"phase {np.degrees(float(motion['phase'])):.4g}°"] if motion.get("phase") else []
+        phrase += (
+            [f"phase {np.degrees(float(motion['phase'])):.4g}°"] if motion.get("phase") else []
+        )
     along = [float(part) for part in motion["direction"]]
     return ", ".join(
         [
-            *words,
+            *phrase,
             "along the normal"
             if not any(along[:2])
             else f"along ({', '.join(f'{part:.4g}' for part in along)})",
@@ -305,19 +303,19 @@ def _motion_words(motion: Mapping[str, Any]) -> str:
 
 
 def _body_words(body: Mapping[str, Any]) -> str:
-    words = [str(body.get("model", "rigid"))]
+    phrase = [str(body.get("model", "rigid"))]
     if body.get("radius") is not None:
-        words.append(f"radius {as_given(float(body['radius']), 'm')}")
+        phrase.append(f"radius {as_given(float(body['radius']), 'm')}")
     if body.get("mass") is not None:
-        words.append(f"mass {as_given(float(body['mass']), 'kg')}")
+        phrase.append(f"mass {as_given(float(body['mass']), 'kg')}")
     if (inertia := body.get("inertia")) is not None:
-        words.append(
+        phrase.append(
             inertia
             if isinstance(inertia, str)
             else f"moment of inertia {as_given(float(inertia), 'kg m^2')}"
         )
     if body.get("size"):
-        words.append(" \u00d7 ".join(as_given(float(side), "m") for side in body["size"]))
+        phrase.append(" \u00d7 ".join(as_given(float(side), "m") for side in body["size"]))
     material = body.get("material")
     if isinstance(material, Mapping):
         name = f"{shortened(visible(material['name']), 60)}: " if material.get("name") else ""
@@ -325,36 +323,37 @@ def _body_words(body: Mapping[str, Any]) -> str:
             f"E {as_given(float(material['youngs_modulus']), 'Pa')}, \u03bd "
             f"{as_given(float(material['poissons_ratio']), '')}"
         )
-        words.append(f"{name}{stiff}, {as_given(float(material['density']), 'kg/m^3')}")
+        phrase.append(f"{name}{stiff}, {as_given(float(material['density']), 'kg/m^3')}")
     elif material is not None:
-        words.append(f"material {material}")
+        phrase.append(f"material {material}")
     if body.get("modes"):
-        words.append(f"{body['modes']} modes")
-    return ", ".join(words)
+        phrase.append(f"{body['modes']} modes")
+    return ", ".join(phrase)
 
 
 def _law_words(contact: Mapping[str, Any]) -> str:
     """Return a law with its parameters in their units; of a law that is not installed
     here they are not known.
     """
-    name, law = str(contact["law"]), {**contact_laws(), **friction_laws()}.get(contact["law"])
+    name = str(contact["law"])
+    law = {**contact_laws(), **friction_laws()}.get(contact["law"])
     if law is None:
         return shortened(visible(name), 60)
-    found = []
+    parameters = []
     for key, item in law.__dataclass_fields__.items():
         value = contact.get(key)
         if value is None or (item.metadata.get("memory") and not np.any(value)):
             continue
         unit = unit_of(item, contact.get("exponent", 1))
         if isinstance(value, Mapping):
-            found.append(f"{key.replace('_', ' ')} {of_table(value).words}")
+            parameters.append(f"{key.replace('_', ' ')} {of_table(value).words}")
             continue
         numbers = [
-            as_given(float(one), unit)
-            for one in (value if isinstance(value, Sequence) else [value])
+            as_given(float(number), unit)
+            for number in (value if isinstance(value, Sequence) else [value])
         ]
-        found.append(f"{key.replace('_', ' ')} {', '.join(numbers)}")
-    return f"{name}: {', '.join(found)}" if found else name
+        parameters.append(f"{key.replace('_', ' ')} {', '.join(numbers)}")
+    return f"{name}: {', '.join(parameters)}" if parameters else name
 
 
 def _place(position: Any) -> str:

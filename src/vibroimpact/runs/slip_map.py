@@ -17,7 +17,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.pair import contact_pair
+from vibroimpact.cases.rigid.pair import contact_pair
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Level, Line, Mark
@@ -105,8 +105,9 @@ def slip_map(
     if len(before) and np.ptp(lost) <= _ALIKE * lost.mean():
         ends = np.array([max(float(lost.mean()) - _ABOVE, 0.0), float(before.max())])
         lines.append(Line(ends, ends - lost.mean(), "slips throughout", "reference"))
-    across, up = Axis("ψ before, G* v / (μ E* vₙ)"), Axis("ψ after")
-    words = (
+    across = Axis("ψ before, G* v / (μ E* vₙ)")
+    up = Axis("ψ after")
+    phrase = (
         "v is the velocity of the contact point along the plate, vₙ the approach speed along "
         "the normal (Maw, Barber and Fawcett 1976)."
     )
@@ -115,6 +116,6 @@ def slip_map(
         "slip_map",
         "Slip after the impact over slip before",
         ((panel,),),
-        f"{caption} {words}",
+        f"{caption} {phrase}",
         height=3.4,
     )

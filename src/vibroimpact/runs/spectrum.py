@@ -61,7 +61,8 @@ def first_response(result: Result, name: str) -> slice:
     """Return the slice of a sensor's samples from the first touch to the next, or to the
     end; at most 131072 samples.
     """
-    touches, signal = result.impacts["time_s"], result.signals[name]
+    touches = result.impacts["time_s"]
+    signal = result.signals[name]
     first = signal.first_at(float(touches[0])) if len(touches) else 0
     last = signal.first_at(float(touches[1])) if len(touches) > 1 else len(signal.value)
     return slice(first, min(last, first + _LONGEST))

@@ -44,7 +44,8 @@ def plate_extent(result: Result) -> Extent | None:
     """Return the extent of the plate: of its case, or of its mesh if that was brought;
     None if it has none.
     """
-    plate, deflection = result.case.get("plate", {}), result.deflection
+    plate = result.case.get("plate", {})
+    deflection = result.deflection
     size = [float(side) for side in plate.get("size", ())]
     thickness = size[2] if size else math.nan
     if deflection is not None and ("file" in plate.get("mesh", {}) or not size):
@@ -77,18 +78,18 @@ def single_supports(case: ResolvedCase) -> list[Mapping[str, Any]]:
             if given == "free"
             else [{"type": "edge", "edge": edge, "condition": given} for edge in _EDGES]
         )
-    found: list[Mapping[str, Any]] = []
-    for one in given:
-        if "spacing" in one:  # four of them, at the corners of a rectangle
-            across, up = (0.5 * float(side) for side in one["spacing"])
-            kind = {"patches": "patch", "bars": "bar"}[one["type"]]
-            found += [
-                {**one, "type": kind, "position": (x * across, y * up)}
+    supports: list[Mapping[str, Any]] = []
+    for support in given:
+        if "spacing" in support:  # four of them, at the corners of a rectangle
+            across, up = (0.5 * float(side) for side in support["spacing"])
+            kind = {"patches": "patch", "bars": "bar"}[support["type"]]
+            supports += [
+                {**support, "type": kind, "position": (x * across, y * up)}
                 for x, y in product((-1.0, 1.0), repeat=2)
             ]
         else:
-            found.append(one)
-    return found
+            supports.append(support)
+    return supports
 
 
 def support_outlines(result: Result, *, edges: bool = True) -> list[tuple[Floats, Floats]]:
@@ -105,25 +106,25 @@ def support_outlines(result: Result, *, edges: bool = True) -> list[tuple[Floats
     extent = plate_extent(result)
     if extent is None:
         return []
-    found = [
-        _outline(one, extent)
-        for one in single_supports(result.case)
-        if edges or one["type"] != "edge"
+    outlines = [
+        _outline(support, extent)
+        for support in single_supports(result.case)
+        if edges or support["type"] != "edge"
     ]
-    return [outline for outline in found if outline is not None]
+    return [outline for outline in outlines if outline is not None]
 
 
-def _outline(one: Mapping[str, Any], extent: Extent) -> tuple[Floats, Floats] | None:
+def _outline(support: Mapping[str, Any], extent: Extent) -> tuple[Floats, Floats] | None:
     small = THIN * extent.longer
-    if one["type"] == "edge":
-        return strip(one["edge"], extent.x, extent.y, small)
-    if "position" not in one:
+    if support["type"] == "edge":
+        return strip(support["edge"], extent.x, extent.y, small)
+    if "position" not in support:
         return None
-    x, y = (float(part) for part in one["position"])
-    if one.get("size"):
-        length, width = (float(side) for side in one["size"])
+    x, y = (float(part) for part in support["position"])
+    if support.get("size"):
+        length, width = (float(side) for side in support["size"])
         return rectangle(x, y, length, width)
-    return disc(x, y, float(one.get("radius") or small))
+    return disc(x, y, float(support.get("radius") or small))
 
 
 def supports_from_the_side(result: Result, extent: Extent, thickness: float) -> list[Mark]:
@@ -139,27 +140,33 @@ def supports_from_the_side(result: Result, extent: Extent, thickness: float) -> 
     thickness : float
         Thickness as it is drawn [m].
     """
-    deep, wide = _DEPTH * (extent.x[1] - extent.x[0]), THIN * extent.longer
+    deep = _DEPTH * (extent.x[1] - extent.x[0])
+    wide = THIN * extent.longer
     if result.case.get("plate", {}).get("model") == "rigid":
         return [_block(*extent.x, -thickness, -thickness - deep)]
-    found: dict[tuple[Any, ...], list[Mark]] = {}  # of those behind each other one is seen
-    for one in single_supports(result.case):
-        outline = _outline(one, extent)
+    marks_of_supports: dict[
+        tuple[Any, ...], list[Mark]
+    ] = {}  # of those behind each other one is seen
+    for support in single_supports(result.case):
+        outline = _outline(support, extent)
         if outline is None:
             continue
-        low, high = float(outline[0].min()), float(outline[0].max())
-        key = one["type"], one.get("condition"), round(low, 9), round(high, 9)
-        found.setdefault(key, _from_the_side(one, (low, high), thickness, (deep, wide)))
+        low = float(outline[0].min())
+        high = float(outline[0].max())
+        key = support["type"], support.get("condition"), round(low, 9), round(high, 9)
+        marks_of_supports.setdefault(
+            key, _from_the_side(support, (low, high), thickness, (deep, wide))
+        )
     # the widest, which may be the support of a whole edge, lie behind the others
     return [
         mark
-        for _, marks in sorted(found.items(), key=lambda item: item[0][2] - item[0][3])
+        for _, marks in sorted(marks_of_supports.items(), key=lambda item: item[0][2] - item[0][3])
         for mark in marks
     ]
 
 
 def _from_the_side(
-    one: Mapping[str, Any],
+    support: Mapping[str, Any],
     across: tuple[float, float],
     thickness: float,
     sizes: tuple[float, float],
@@ -170,21 +177,24 @@ def _from_the_side(
         -thickness,
         0.5 * (across[0] + across[1]),
     )
-    if one["type"] == "edge" and high - low > 2.0 * wide:  # along the plate, in front and behind
+    if (
+        support["type"] == "edge" and high - low > 2.0 * wide
+    ):  # along the plate, in front and behind
         return [_block(low, high, below, below - 0.5 * deep, "held")]
-    if one["type"] == "edge" and one["condition"] == "clamped":
-        outside = (low - deep, low) if one["edge"] == "x-min" else (high, high + deep)
+    if support["type"] == "edge" and support["condition"] == "clamped":
+        outside = (low - deep, low) if support["edge"] == "x-min" else (high, high + deep)
         return [_block(*outside, 0.5 * deep, below - 0.5 * deep)]
-    if one["type"] in ("edge", "point"):  # a knife
-        side, down = np.array([0.0, 0.5, -0.5]), np.array([0.0, 1.0, 1.0])
+    if support["type"] in ("edge", "point"):  # a knife
+        side = np.array([0.0, 0.5, -0.5])
+        down = np.array([0.0, 1.0, 1.0])
         return [Outline(middle + deep * side, below - deep * down, role="support")]
-    if one["type"] == "spring":
+    if support["type"] == "spring":
         turns = np.array([0.0, 0.0, 1.0, -1.0, 1.0, -1.0, 0.0, 0.0])
         heights = below - deep * np.array([0.0, 0.15, 0.25, 0.42, 0.58, 0.75, 0.85, 1.0])
         ground = _block(middle - 0.5 * deep, middle + 0.5 * deep, below - deep, below - 1.3 * deep)
         return [Line(middle + 0.25 * deep * turns, heights), ground]
-    if one["type"] == "bar":
-        foot = below - min(float(one["length"]), _MOST_DEEP * deep)
+    if support["type"] == "bar":
+        foot = below - min(float(support["length"]), _MOST_DEEP * deep)
         return [
             _block(low, high, below, foot, "body"),
             _block(low - 0.3 * deep, high + 0.3 * deep, foot, foot - 0.3 * deep),
@@ -218,17 +228,21 @@ def support_words(result: Result) -> str:
     if isinstance(given, str):
         return f"{given.replace('-', ' ')} along all edges"
     singles = single_supports(result.case)
-    counts = Counter(_kind(one) for one in singles if one["type"] in _PLURALS)
-    words = [f"{count} {plural}" if count > 1 else kind for (kind, plural), count in counts.items()]
-    for condition in dict.fromkeys(one["condition"] for one in singles if one["type"] == "edge"):
-        edges = [one["edge"] for one in singles if one.get("condition") == condition]
-        words.append(f"{condition.replace('-', ' ')} at {', '.join(edges)}")
-    words += [
-        f"held at its set {shortened(visible(one['name']), 40)}"
-        for one in singles
-        if one["type"] == "set"
+    counts = Counter(_kind(single) for single in singles if single["type"] in _PLURALS)
+    phrase = [
+        f"{count} {plural}" if count > 1 else kind for (kind, plural), count in counts.items()
     ]
-    return "; ".join(words)
+    for condition in dict.fromkeys(
+        single["condition"] for single in singles if single["type"] == "edge"
+    ):
+        edges = [single["edge"] for single in singles if single.get("condition") == condition]
+        phrase.append(f"{condition.replace('-', ' ')} at {', '.join(edges)}")
+    phrase += [
+        f"held at its set {shortened(visible(single['name']), 40)}"
+        for single in singles
+        if single["type"] == "set"
+    ]
+    return "; ".join(phrase)
 
 
 _PLURALS = {
@@ -239,8 +253,8 @@ _PLURALS = {
 }
 
 
-def _kind(one: Mapping[str, Any]) -> tuple[str, str]:
+def _kind(support: Mapping[str, Any]) -> tuple[str, str]:
     """Return what a support is called, one and several of them."""
-    single, several = _PLURALS[one["type"]]
-    along = f" held along {', '.join(one['directions'])}" if one["type"] == "point" else ""
+    single, several = _PLURALS[support["type"]]
+    along = f" held along {', '.join(support['directions'])}" if support["type"] == "point" else ""
     return single + along, several + along

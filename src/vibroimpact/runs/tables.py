@@ -66,7 +66,8 @@ _ROUNDING = 1e-12
 # relative to the approach speed: lowest separation speed used in estimating the certainty of
 # energies
 _SLOW = 0.1
-SUM, PUT_IN = "Sum", "Put in at the start"
+SUM = "Sum"
+PUT_IN = "Put in at the start"
 
 
 class LedgerRow(NamedTuple):
@@ -149,17 +150,17 @@ def shown_columns(result: Result) -> list[str]:
     contact that slides throughout no microslip.
     """
     impacts = result.impacts
-    told = {
+    shows = {
         "contacts": several_contacts(impacts),
         "sensitivity": loses_digits(result.change_by_impact),
     }
-    told |= {name: bool(np.any(impacts[name])) for name in ("duration_s", "max_indentation_m")}
+    shows |= {name: bool(np.any(impacts[name])) for name in ("duration_s", "max_indentation_m")}
     microslip = np.abs(impacts.get("microslip_lost_J", np.nan))
-    told["microslip_lost_J"] = bool(np.any(microslip > _ROUNDING * result.energy["input_J"]))
+    shows["microslip_lost_J"] = bool(np.any(microslip > _ROUNDING * result.energy["input_J"]))
     return [
         name
         for name in SHOWN_IMPACT_COLUMNS
-        if told.get(name, True) and np.isfinite(impacts.get(name, np.nan)).any()
+        if shows.get(name, True) and np.isfinite(impacts.get(name, np.nan)).any()
     ]
 
 
@@ -175,7 +176,8 @@ def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
     Entries that are zero but for rounding are left out. The two parts of friction stand for it,
     where the result has them.
     """
-    put_in, scale = result.energy["input_J"], multiple("J", result.energy["input_J"])
+    put_in = result.energy["input_J"]
+    scale = multiple("J", result.energy["input_J"])
     parts = (
         {"friction_J": tuple(FRICTION_PARTS)}
         if result.energy.keys() >= FRICTION_PARTS.keys()
@@ -196,10 +198,8 @@ def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
 
     rows = []
     for name, value in values.items():
-        energy, part = (
-            shown(name, value / scale.size, put_in / scale.size),
-            shown(name, 100.0 * value / put_in, 100.0),
-        )
+        energy = shown(name, value / scale.size, put_in / scale.size)
+        part = shown(name, 100.0 * value / put_in, 100.0)
         title = LEDGER_COLUMNS[name].label if name in LEDGER_COLUMNS else name
         rows.append(LedgerRow(name, title, energy, part))
     return scale.unit, rows
@@ -230,11 +230,13 @@ def energy_text(result: Result, *entries: str) -> str:
     """Return the sum of entries of the ledger as text, with unit and percentage of the
     energy put in, in certain figures.
     """
-    value, put_in = sum(result.energy[entry] for entry in entries), result.energy["input_J"]
+    value = sum(result.energy[entry] for entry in entries)
+    put_in = result.energy["input_J"]
     if abs(value) <= _ROUNDING * put_in:
         return "nothing"
     figures = min(_certain_figures_of_energy(entry, result) for entry in entries)
-    scale, part = multiple("J", value), 100.0 * value / put_in
+    scale = multiple("J", value)
+    part = 100.0 * value / put_in
     percent = certain(fixed(part, 1), part, figures)
     return (
         f"{certain(digits(value / scale.size), value / scale.size, figures)}\u00a0{scale.unit} "
@@ -250,10 +252,8 @@ def _certain_figures_of_energy(entry: str, result: Result) -> int:
     the last impact, or more where the entry is smaller than the energy with which the sphere left:
     this changes as a whole, whatever share of it the entry is.
     """
-    impacts, change = (
-        result.impacts,
-        np.minimum(np.nan_to_num(result.change_by_impact, nan=1.0), 1.0),
-    )
+    impacts = result.impacts
+    change = np.minimum(np.nan_to_num(result.change_by_impact, nan=1.0), 1.0)
     if not len(change) or not change[-1] > 0.0:
         return ALL_FIGURES
     lost = np.abs(impacts["energy_lost_J"])
@@ -315,10 +315,8 @@ def significant_figures(name: str, change: Floats) -> Indices:
 
 def impact_text(result: Result, impact: int, name: str, unit: str) -> str:
     """Return an entry of the impact table as text with its unit, in certain figures."""
-    value, figures = (
-        float(result.impacts[name][impact]),
-        int(significant_figures(name, result.change_by_impact)[impact]),
-    )
+    value = float(result.impacts[name][impact])
+    figures = int(significant_figures(name, result.change_by_impact)[impact])
     best = multiple(unit, value)
     return (
         f"{certain(digits(value / best.size), value / best.size, figures)}\u00a0{best.unit}".rstrip(

@@ -110,11 +110,11 @@ def plate_time(result: Result) -> Axis:
 def _chart(
     result: Result,
     history: Mapping[str, Floats],
-    words: tuple[str, str, str],
+    phrase: tuple[str, str, str],
     rows: Sequence[Row],
     time: Axis,
 ) -> Chart:
-    name, title, caption = words
+    name, title, caption = phrase
     panels = []
     for row in rows:
         values = (
@@ -141,7 +141,8 @@ def plate_span(result: Result, impact: int = 0) -> float:
     It is 1.5 periods of the lowest mode, where the plate has one, but ends at the next impact or
     the end of the run, and is at least 1.2 contact durations.
     """
-    touches, duration = result.impacts["time_s"], float(result.impacts["duration_s"][impact])
+    touches = result.impacts["time_s"]
+    duration = float(result.impacts["duration_s"][impact])
     until = (
         float(touches[impact + 1])
         if len(touches) > impact + 1

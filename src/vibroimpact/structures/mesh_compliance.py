@@ -31,19 +31,19 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.materials import Material
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.plate_element import shear_factor
+from vibroimpact.structures.finite_elements.plate_mesh import plate_mesh
+from vibroimpact.structures.finite_elements.structure import plate_structure
+from vibroimpact.structures.finite_elements.surface import element_at
 from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.plate_compliance import Average
-from vibroimpact.structures.plate_element import shear_factor
-from vibroimpact.structures.plate_mesh import plate_mesh
 from vibroimpact.structures.recipe import Recipe, plate_key
 from vibroimpact.structures.static_compliance import averaged_compliances, plate_element_average
 from vibroimpact.structures.store import key_of
-from vibroimpact.structures.structure import plate_structure
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.support import held_by
-from vibroimpact.structures.surface import element_at
 
 # elements along each side of the small plate; five change what is lacking by less than 0.2 %
 _ACROSS = 3

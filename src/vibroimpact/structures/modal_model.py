@@ -16,15 +16,15 @@ from scipy.sparse import csr_array
 
 from vibroimpact.arrays import Floats
 from vibroimpact.structures.damping import Damping
-from vibroimpact.structures.disc_quadrature import HERTZ, pressure_rule
-from vibroimpact.structures.geometry import MassProperties
+from vibroimpact.structures.finite_elements.disc_quadrature import HERTZ, pressure_rule
+from vibroimpact.structures.finite_elements.geometry import MassProperties
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.surface import Side, Spot, place_of, surface_motion
+from vibroimpact.structures.finite_elements.surface_strain import surface_strain
 from vibroimpact.structures.memory_cache import MemoryCache
-from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.modes import Eigenmodes
 from vibroimpact.structures.sound_paths import Listener, SoundPaths, sound_paths
 from vibroimpact.structures.supports.constraints import HeldStructure
-from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
-from vibroimpact.structures.surface_strain import surface_strain
 
 _CACHE_SIZE = 1e7  # bytes, of mode shapes at places and on the grid of a picture
 

@@ -13,8 +13,8 @@ from scipy.sparse import csr_array
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import ComputationError, InputError
-from vibroimpact.structures.factor import BYTES_PER_ENTRY, Factors
-from vibroimpact.structures.free_memory import check_memory
+from vibroimpact.structures.finite_elements.factor import BYTES_PER_ENTRY, Factors
+from vibroimpact.structures.finite_elements.free_memory import check_memory
 from vibroimpact.structures.lanczos import TOLERANCE, lowest_modes
 
 _DENSE = 400  # degrees of freedom up to which a dense eigenvalue solver is faster

@@ -6,9 +6,9 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.materials import Material
+from vibroimpact.structures.finite_elements.surface import slope_divergence
 from vibroimpact.structures.modal_model import ModalModel
 from vibroimpact.structures.plate_waves import bending_factor, mindlin_squares, shear_wave_factor
-from vibroimpact.structures.surface import slope_divergence
 
 
 def face_shapes(

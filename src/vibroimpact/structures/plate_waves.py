@@ -23,8 +23,8 @@ from numpy.polynomial import Chebyshev
 
 from vibroimpact.arrays import Floats
 from vibroimpact.materials import Material
+from vibroimpact.structures.finite_elements.plate_element import shear_factor
 from vibroimpact.structures.plate_compliance import mean_square
-from vibroimpact.structures.plate_element import shear_factor
 
 _LARGEST = 8.0  # wave number times thickness beyond which the bending factor is constant
 _DEGREE = 24  # of the polynomial that interpolates the factor within 3e-8

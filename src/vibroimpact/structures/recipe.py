@@ -17,7 +17,18 @@ from scipy.sparse import csr_array
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.materials import Material
-from vibroimpact.structures.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.finite_elements.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.plate_mesh import plate_mesh, solid_plate_mesh
+from vibroimpact.structures.finite_elements.rectangle import Disc
+from vibroimpact.structures.finite_elements.sphere_mesh import sphere_mesh
+from vibroimpact.structures.finite_elements.stated_materials import contradictions
+from vibroimpact.structures.finite_elements.structure import (
+    Structure,
+    plate_structure,
+    solid_structure,
+)
+from vibroimpact.structures.finite_elements.surface import Side, Spot, place_of, surface_motion
 from vibroimpact.structures.frequency_error import (
     MESH,
     REDUCTION,
@@ -30,20 +41,13 @@ from vibroimpact.structures.frequency_error import (
     support_errors,
 )
 from vibroimpact.structures.memory_cache import MemoryCache
-from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.mirrored import elastic_system
 from vibroimpact.structures.modal_model import ModalModel, modal_model
 from vibroimpact.structures.modes import Eigenmodes, ElasticSystem, Progress
-from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
-from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.reduction import attachment_modes, craig_bampton, projected
-from vibroimpact.structures.sphere_mesh import sphere_mesh
-from vibroimpact.structures.stated_materials import contradictions
 from vibroimpact.structures.store import key_of, load_model, save_model, store_folder
-from vibroimpact.structures.structure import Structure, plate_structure, solid_structure
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.supports.support import Support, held_by, joint_remarks
-from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
 
 Place = tuple[Spot, Side]
 """A spot, and the side of the body where it lies."""

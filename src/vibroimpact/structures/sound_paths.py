@@ -19,9 +19,9 @@ from numpy.polynomial import legendre
 from scipy.sparse import coo_array, csr_array
 
 from vibroimpact.arrays import Floats, Integers
-from vibroimpact.structures.lagrange_shares import lagrange_shares
-from vibroimpact.structures.mesh import Mesh
-from vibroimpact.structures.surface import Faces, Side, Spot, facing, place_of
+from vibroimpact.structures.finite_elements.lagrange_shares import lagrange_shares
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.surface import Faces, Side, Spot, facing, place_of
 
 _STEPS_PER_PERIOD = 14.0
 """Steps of the grid of delays in the shortest period of the sound."""
@@ -101,7 +101,7 @@ def sound_paths(mesh: Mesh, listener: Listener, shapes: Floats) -> SoundPaths:
 
     Examples
     --------
-    >>> from vibroimpact.structures.plate_mesh import plate_mesh
+    >>> from vibroimpact.structures.finite_elements.plate_mesh import plate_mesh
     >>> mesh = plate_mesh((0.2, 0.1), 0.1)
     >>> lifted = np.tile([0.0, 0.0, 1.0, 0.0, 0.0], len(mesh.nodes))[None]
     >>> paths = sound_paths(mesh, Listener((0.0, 0.0), "upper", 10.0, 343.0, 1e-6), lifted)

@@ -10,9 +10,12 @@ from scipy.sparse import csr_array
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
-from vibroimpact.structures.disc_quadrature import UNIFORM, pressure_rule
+from vibroimpact.structures.finite_elements.disc_quadrature import UNIFORM, pressure_rule
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.plate_element import shear_factor
+from vibroimpact.structures.finite_elements.structure import Structure
+from vibroimpact.structures.finite_elements.surface import Side, materials_around, surface_motion
 from vibroimpact.structures.memory_cache import MemoryCache
-from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.plate_compliance import (
     Average,
@@ -21,13 +24,10 @@ from vibroimpact.structures.plate_compliance import (
     through_thickness_average,
     through_thickness_term,
 )
-from vibroimpact.structures.plate_element import shear_factor
 from vibroimpact.structures.recipe import Recipe, SphereOfSolids, is_thin, plate_key
 from vibroimpact.structures.store import COMPLIANCE, hold_entry, key_of, load_or_compute
-from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.supports.support import held_by
-from vibroimpact.structures.surface import Side, materials_around, surface_motion
 
 _FACES: tuple[Side, Side] = ("upper", "lower")
 _RADIUS = 0.75  # of the disc, in thicknesses; elements of that size resolve it

@@ -28,10 +28,10 @@ from vibroimpact.files.atomic_write import write_file
 from vibroimpact.files.json_reading import parse_json
 from vibroimpact.files.recover import clear
 from vibroimpact.materials import Material
-from vibroimpact.structures.geometry import MassProperties
-from vibroimpact.structures.joints import Joints
+from vibroimpact.structures.finite_elements.geometry import MassProperties
+from vibroimpact.structures.finite_elements.joints import Joints
+from vibroimpact.structures.finite_elements.mesh import ElementBlock, Mesh
 from vibroimpact.structures.memory_cache import MemoryCache
-from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.modal_model import ModalModel
 
 FORMAT = 6

@@ -17,16 +17,16 @@ from scipy.sparse import csr_array
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.structure import Structure
+from vibroimpact.structures.finite_elements.surface import Side, Spot, place_of
 from vibroimpact.structures.modal_model import ModalModel
 from vibroimpact.structures.plate_compliance import Average
 from vibroimpact.structures.recipe import Recipe, plate_key
 from vibroimpact.structures.static_compliance import responses_to_spread_forces
 from vibroimpact.structures.store import COMPLIANCE, key_of, load_or_compute
-from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.supports.support import Support
-from vibroimpact.structures.surface import Side, Spot, place_of
 from vibroimpact.structures.transfer_strain import spread_at_face
 
 

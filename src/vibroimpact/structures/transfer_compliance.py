@@ -23,12 +23,12 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.structures.finite_elements.plate_element import shear_factor
+from vibroimpact.structures.finite_elements.surface import Side, surface_motion
 from vibroimpact.structures.plate_compliance import Average, layer_kernels, mean_square
-from vibroimpact.structures.plate_element import shear_factor
 from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Shape, is_thin, plate_key
 from vibroimpact.structures.static_compliance import responses_to_spread_forces
 from vibroimpact.structures.store import COMPLIANCE, hold_entry, key_of, load_or_compute_array
-from vibroimpact.structures.surface import Side, surface_motion
 
 _RADIUS = 0.75  # of the disc, in thicknesses
 _NEAR = 4.0  # thicknesses beyond which a layer and plate theory agree

@@ -7,13 +7,13 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.structures.finite_elements.plate_element import shear_factor
+from vibroimpact.structures.finite_elements.surface import Side
+from vibroimpact.structures.finite_elements.surface_strain import surface_strain
 from vibroimpact.structures.plate_compliance import Average, mean_square
-from vibroimpact.structures.plate_element import shear_factor
 from vibroimpact.structures.recipe import PlateOfPlates, Recipe, is_thin, plate_key
 from vibroimpact.structures.static_compliance import responses_to_spread_forces
 from vibroimpact.structures.store import key_of, load_or_compute_array
-from vibroimpact.structures.surface import Side
-from vibroimpact.structures.surface_strain import surface_strain
 from vibroimpact.structures.transfer_compliance import Point
 
 _RADIUS = 0.75  # of the disc of the force, in thicknesses

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
 
-from vibroimpact.studies.compute_study import MEMORY, compute_study
+from vibroimpact.studies.computation.compute_study import MEMORY, compute_study
+from vibroimpact.studies.computation.study import load_study
+from vibroimpact.studies.planning.sweep import Sweep
 from vibroimpact.studies.report.write_report import write_study_report
-from vibroimpact.studies.study import load_study
-from vibroimpact.studies.sweep import Sweep
 
 
 def run_sweep(

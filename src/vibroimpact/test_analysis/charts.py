@@ -24,13 +24,13 @@ MOST = 8
 _HEIGHT = 2.8
 _BEGIN = 6e-3
 """Time from the first touch on that is shown beside the whole [s]."""
-_LOOKS = (("measured", "main"), ("simulated", "fit"), ("residual", "mark line"))
+_LOOKS = (("measured", "measured"), ("simulated", "fit"), ("residual", "difference"))
 """Names and roles of the lines of an overlay."""
 _DECADES = 4.0
 """Decades below its peak down to which a response is shown."""
 
 
-def correlation_charts(found: Correlation) -> list[Chart]:
+def correlation_charts(correlation: Correlation) -> list[Chart]:
     """Return the charts `overlay`, `responses`, `frac` and, if a damping was measured, `damping`.
 
     Examples
@@ -60,12 +60,12 @@ def correlation_charts(found: Correlation) -> list[Chart]:
     ['overlay', 'responses', 'frac', 'damping']
     """
     makers = {
-        "overlay": partial(_overlay, found),
-        "responses": partial(_responses, found),
-        "frac": partial(frac_chart, found, what_frac_is_of(found)),
+        "overlay": partial(_overlay, correlation),
+        "responses": partial(_responses, correlation),
+        "frac": partial(frac_chart, correlation, what_frac_is_of(correlation)),
     }
-    if any(pair.damping_measured for pair in found.modes):
-        makers["damping"] = partial(damping_chart, found, "the decay of the records")
+    if any(pair.damping_measured for pair in correlation.modes):
+        makers["damping"] = partial(damping_chart, correlation, "the decay of the records")
     return made_charts(makers)
 
 
@@ -74,80 +74,94 @@ def those_drawn(number: int) -> str:
     return f" The first {MOST} of {number} are drawn." if number > MOST else ""
 
 
-def _name(found: Criteria, number: int) -> str:
-    return shortened(visible(found.sensors[number].name), 40)
+def _name(criteria: Criteria, number: int) -> str:
+    return shortened(visible(criteria.sensors[number].name), 40)
 
 
-def _overlay(found: Correlation) -> Chart:
-    begin, whole = Axis("Time since first touch", "s"), Axis("Time since first touch", "s")
+def _overlay(correlation: Correlation) -> Chart:
+    begin = Axis("Time since first touch", "s")
+    whole = Axis("Time since first touch", "s")
     rows: list[tuple[Panel, ...]] = []
-    early = found.time <= max(_BEGIN, float(found.time[0]) + _BEGIN)
-    for number, sensor in enumerate(found.sensors[:MOST]):
+    early = correlation.time <= max(_BEGIN, float(correlation.time[0]) + _BEGIN)
+    for number, sensor in enumerate(correlation.sensors[:MOST]):
         level = Axis(sensor.quantity.capitalize(), sensor.unit)
         shown = (
             (begin, early, "first part"),
-            (whole, slice(None), f"residual {100.0 * found.relative_residual[number]:.1f} % (rms)"),
+            (
+                whole,
+                slice(None),
+                f"residual {100.0 * correlation.relative_residual[number]:.1f} % (rms)",
+            ),
         )
         panels = []
-        for axis, part, words in shown:
+        for axis, part, phrase in shown:
             values = (
-                found.measured[number, part],
-                found.simulated[number, part],
-                found.residual[number, part],
+                correlation.measured[number, part],
+                correlation.simulated[number, part],
+                correlation.residual[number, part],
             )
             lines = (
-                Line(found.time[part], value, name, role)
+                Line(correlation.time[part], value, name, role)
                 for value, (name, role) in zip(values, _LOOKS, strict=True)
             )
-            panels.append(Panel(axis, level, tuple(lines), f"{_name(found, number)}: {words}"))
+            panels.append(
+                Panel(axis, level, tuple(lines), f"{_name(correlation, number)}: {phrase}")
+            )
         rows.append(tuple(panels))
     caption = (
-        f"Records, aligned in time by their first {1e3 * found.aligned:.3g} ms, the "
+        f"Records, aligned in time by their first {1e3 * correlation.aligned:.3g} ms, the "
         "simulation, and the difference, within the band from "
-        f"{found.band[0]:.4g} to {found.band[1]:.4g} Hz.{those_drawn(len(found.sensors))}"
+        f"{correlation.band[0]:.4g} to {correlation.band[1]:.4g} Hz."
+        f"{those_drawn(len(correlation.sensors))}"
     )
     return Chart("overlay", "Records and simulation", tuple(rows), caption, _HEIGHT)
 
 
-def _responses(found: Correlation) -> Chart:
-    axis = Axis("Frequency", "Hz", range=found.band)
+def _responses(correlation: Correlation) -> Chart:
+    axis = Axis("Frequency", "Hz", range=correlation.band)
     rows: list[tuple[Panel, ...]] = []
-    computed = np.array([pair.frequency for pair in found.modes if pair.number is not None])
-    quantity = "Magnitude" if found.hits else "Amplitude"
-    for number, sensor in enumerate(found.sensors[:MOST]):
+    computed = np.array([pair.frequency for pair in correlation.modes if pair.number is not None])
+    quantity = "Magnitude" if correlation.hits else "Amplitude"
+    for number, sensor in enumerate(correlation.sensors[:MOST]):
         lines, shown = magnitude_lines(
-            found.frequency, (found.measured_response[number], found.simulated_response[number])
+            correlation.frequency,
+            (correlation.measured_response[number], correlation.simulated_response[number]),
         )
         scale = Axis(
-            quantity, f"{sensor.unit}/N" if found.hits else sensor.unit, log=True, range=shown
+            quantity, f"{sensor.unit}/N" if correlation.hits else sensor.unit, log=True, range=shown
         )
         marks: tuple[Mark, ...] = (*lines, Rug(computed, "modes of the case"))
         panels = [
-            Panel(axis, scale, marks, f"{_name(found, number)}: FRAC {found.frac[number]:.3f}")
+            Panel(
+                axis,
+                scale,
+                marks,
+                f"{_name(correlation, number)}: FRAC {correlation.frac[number]:.3f}",
+            )
         ]
-        if found.coherence is not None:
+        if correlation.coherence is not None:
             level = Axis("Coherence", range=(0.0, 1.02))
             panels.append(
                 Panel(
                     axis,
                     level,
-                    (Line(found.frequency, found.coherence[number], role="detail"),),
+                    (Line(correlation.frequency, correlation.coherence[number], role="detail"),),
                     "Coherence of force and record",
                 )
             )
         rows += [(panel,) for panel in panels]
     what = (
         "Frequency responses to the force (estimator H1)"
-        if found.hits
+        if correlation.hits
         else "Spectra of record and simulation"
     )
     caption = (
         f"{what}, with the same window and spectral leakage. Ticks mark the modes of the "
-        f"case.{those_drawn(len(found.sensors))}"
+        f"case.{those_drawn(len(correlation.sensors))}"
     )
     return Chart(
         "responses",
-        "Frequency responses" if found.hits else "Spectra",
+        "Frequency responses" if correlation.hits else "Spectra",
         tuple(rows),
         caption,
         _HEIGHT,
@@ -162,7 +176,7 @@ def magnitude_lines(
 
     `looks`: names and roles of the lines.
     """
-    sizes = [np.abs(one) for one in responses]
+    sizes = [np.abs(response) for response in responses]
     most = max(float(size.max(initial=0.0)) for size in sizes)
     floor = 10.0**-_DECADES * most + 1e-300
     lines = [
@@ -172,16 +186,16 @@ def magnitude_lines(
     return lines, (floor, 2.0 * most) if most > 0.0 else None
 
 
-def frac_chart(found: Criteria, of: str) -> Chart:
+def frac_chart(criteria: Criteria, of: str) -> Chart:
     """Return the chart of the criterion over octaves, of what is compared."""
-    names = tuple(f"{low:.4g} to {high:.4g} Hz" for low, high in found.octaves)
-    shown = found.octave_frac[:MOST]
+    names = tuple(f"{low:.4g} to {high:.4g} Hz" for low, high in criteria.octaves)
+    shown = criteria.octave_frac[:MOST]
     width = 0.8 / len(shown)
     marks = tuple(
         Bars(
             np.asarray(np.arange(len(names)) + (number - 0.5 * (len(shown) - 1)) * width),
             np.nan_to_num(values),
-            _name(found, number),
+            _name(criteria, number),
             f"series {number}",
             width=width,
         )
@@ -191,22 +205,22 @@ def frac_chart(found: Criteria, of: str) -> Chart:
     caption = (
         f"Frequency response assurance criterion over each octave, of {of}. 1: equal except "
         f"for a factor; 0: uncorrelated. An octave with fewer than {FEW} frequencies has "
-        f"no bar.{those_drawn(len(found.sensors))}"
+        f"no bar.{those_drawn(len(criteria.sensors))}"
     )
     return Chart("frac", "Frequency response assurance criterion", ((panel,),), caption, _HEIGHT)
 
 
-def damping_chart(found: Criteria, by: str) -> Chart:
+def damping_chart(criteria: Criteria, by: str) -> Chart:
     """Return the chart of damping ratios, measured by something and of the case."""
     measured = [
         pair.measured
-        for pair in found.modes
+        for pair in criteria.modes
         if pair.measured is not None and not pair.measured.doubt
     ]
     intervals = np.array([mode.damping_ratio.interval for mode in measured])
     places = np.array([mode.frequency.value for mode in measured])
     ratios = np.array([mode.damping_ratio.value for mode in measured])
-    of_case = [pair for pair in found.modes if pair.number is not None]
+    of_case = [pair for pair in criteria.modes if pair.number is not None]
     computed = np.array([pair.damping_ratio for pair in of_case])
     marks = (
         Points(np.array([pair.frequency for pair in of_case]), computed, "case", "other mark"),
@@ -214,7 +228,7 @@ def damping_chart(found: Criteria, by: str) -> Chart:
             places,
             ratios,
             "measured, with 95 % interval",
-            "matched",
+            "measured",
             low=intervals[:, 0],
             high=intervals[:, 1],
         ),
@@ -222,7 +236,7 @@ def damping_chart(found: Criteria, by: str) -> Chart:
     # room for the marks of the largest
     top = 1.1 * float(np.nanmax(np.append(computed, intervals)))
     panel = Panel(
-        Axis("Frequency", "Hz", range=found.band), Axis("Damping ratio", range=(0.0, top)), marks
+        Axis("Frequency", "Hz", range=criteria.band), Axis("Damping ratio", range=(0.0, top)), marks
     )
     caption = f"Damping ratios estimated from {by}, and those of the case."
     return Chart("damping", "Modal damping", ((panel,),), caption, _HEIGHT)

@@ -11,7 +11,7 @@ import numpy as np
 from scipy import fft
 
 from vibroimpact.arrays import Complex, Floats
-from vibroimpact.cases.schema import CaseTable
+from vibroimpact.cases.sections.schema import CaseTable
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
 from vibroimpact.dynamics.sensors.sensor import Sensor

@@ -108,8 +108,8 @@ def without_blank_remarks(
     """Return headers and rows of a table whose last column has remarks, without that if
     there is none.
     """
-    told = len(headers) if any(row[-1] for row in rows) else len(headers) - 1
-    return list(headers[:told]), [list(row[:told]) for row in rows]
+    kept = len(headers) if any(row[-1] for row in rows) else len(headers) - 1
+    return list(headers[:kept]), [list(row[:kept]) for row in rows]
 
 
 def mode_row(pair: ModePair) -> list[str]:
@@ -161,9 +161,9 @@ def signed(value: float) -> str:
     return text if float(text) else text[1:]
 
 
-def mode_table(found: Criteria) -> list[dict[str, Any]]:
+def mode_table(criteria: Criteria) -> list[dict[str, Any]]:
     """Return the modes as rows of `MODE_COLUMNS`; None where there is no number."""
-    return [mode_record(pair) for pair in found.modes]
+    return [mode_record(pair) for pair in criteria.modes]
 
 
 def mode_record(pair: ModePair) -> dict[str, Any]:
@@ -183,8 +183,8 @@ def _mode_values(pair: ModePair) -> list[Any]:
         if mode is None
         else [
             part
-            for one in (mode.frequency, mode.damping_ratio)
-            for part in (one.value, *one.interval)
+            for quantity in (mode.frequency, mode.damping_ratio)
+            for part in (quantity.value, *quantity.interval)
         ]
     )
     return [pair.number, *of_case, *measured, pair.damping_measured, pair.remark]

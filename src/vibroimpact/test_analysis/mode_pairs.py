@@ -96,7 +96,7 @@ class ModePair:
 def pairs_of(
     problem: Problem,
     sensors: Sequence[Sensor],
-    found: Sequence[DecayMode],
+    decay_modes: Sequence[DecayMode],
     band: tuple[float, float],
 ) -> tuple[ModePair, ...]:
     """Return the modes of a plate within a band beside measured ones, by frequency.
@@ -107,7 +107,7 @@ def pairs_of(
     modes = problem.plate.modes
     assert modes is not None  # `plate_problem` has seen to it
     return paired(
-        modes.frequencies, modes.damping_ratios, _responses(problem, sensors), found, band
+        modes.frequencies, modes.damping_ratios, _responses(problem, sensors), decay_modes, band
     )
 
 
@@ -115,7 +115,7 @@ def paired(
     frequencies: Floats,
     ratios: Floats,
     response: Floats,
-    found: Sequence[DecayMode],
+    modes: Sequence[DecayMode],
     band: tuple[float, float],
 ) -> tuple[ModePair, ...]:
     """Return modes within a band beside measured ones, as `pairs_of`.
@@ -125,7 +125,7 @@ def paired(
     inside = np.flatnonzero((frequencies >= band[0]) & (frequencies <= band[1]))
     response = response[inside]
     response = response / max(float(response.max(initial=0.0)), 1e-300)
-    measured_frequencies = [mode.frequency.value for mode in found]
+    measured_frequencies = [mode.frequency.value for mode in modes]
     partners = _partners(frequencies[inside], response, measured_frequencies)
     pairs = []
     for row, index in enumerate(inside.tolist()):
@@ -133,7 +133,7 @@ def paired(
         ratio = float(ratios[index])
         share = float(response[row])
         if row in partners:
-            measured = found[partners[row]]
+            measured = modes[partners[row]]
             remark = measured.doubt
         else:
             measured = None
@@ -141,7 +141,7 @@ def paired(
         pairs.append(ModePair(index + 1, frequency, ratio, share, measured, remark))
     paired_rows = set(partners.values())
     nan = float("nan")
-    for row, mode in enumerate(found):
+    for row, mode in enumerate(modes):
         if row not in paired_rows:
             pairs.append(ModePair(None, nan, nan, nan, mode, "no mode of the case nearby"))
     return tuple(sorted(pairs, key=_sorting_frequency))

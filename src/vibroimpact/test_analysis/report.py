@@ -111,11 +111,11 @@ def _summary(correlation: Correlation) -> dict[str, Any]:
         "first_touch_s": correlation.first_touch,
         "delay_s": correlation.delay,
         "hits": correlation.hits,
-        "octaves_Hz": [list(one) for one in correlation.octaves],
+        "octaves_Hz": [list(removed) for removed in correlation.octaves],
         "records": _records(correlation),
         "removed": {
-            name: {"offset": one.offset, "drift": one.drift}
-            for name, one in correlation.removed.items()
+            name: {"offset": removed.offset, "drift": removed.drift}
+            for name, removed in correlation.removed.items()
         },
         "modes": mode_table(correlation),
         "damping": damping_field(correlation.modes),

@@ -9,8 +9,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.build import problem_of
-from vibroimpact.cases.oblique import oblique_keys
-from vibroimpact.cases.schema import CaseTable
+from vibroimpact.cases.rigid.oblique import oblique_keys
+from vibroimpact.cases.sections.schema import CaseTable
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
 from vibroimpact.dynamics.sensors.place_responses import responses_at, sampled_responses

@@ -10,7 +10,7 @@ import pytest
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
-from vibroimpact.calibration.calibration import Calibration
+from vibroimpact.calibration.contact_law.calibration import Calibration
 
 CONTACT = {"law": "adams-impact", "damping_max": 200.0}
 

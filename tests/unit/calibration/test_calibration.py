@@ -10,9 +10,9 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.calibration.adams_dialog import DIALOG_TITLE
 from vibroimpact.calibration.calibrate_case import ToCalibrate
-from vibroimpact.calibration.differences import differences
+from vibroimpact.calibration.contact_law.adams_dialog import DIALOG_TITLE
+from vibroimpact.calibration.contact_law.differences import differences
 from vibroimpact.charts.marks import Band, Line, Points
 from vibroimpact.exporting.load_drop import load_drop
 from vibroimpact.report.report import Report, Table

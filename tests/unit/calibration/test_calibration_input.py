@@ -13,8 +13,8 @@ import tomli_w
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
-from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.law_report import fit_sentences
+from vibroimpact.calibration.contact_law.calibration import Calibration
+from vibroimpact.calibration.contact_law.law_report import fit_sentences
 from vibroimpact.cli import main
 from vibroimpact.measurements.table_file import read_table_file
 

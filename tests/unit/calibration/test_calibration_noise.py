@@ -17,13 +17,13 @@ from scipy.stats import binom
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.bodies.rigid_bodies import rigid_plate
-from vibroimpact.calibration.calibrate import calibrate
-from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.force_record import impacts_in_force
-from vibroimpact.calibration.joint_flights import _CONTACT_DEVIATION
-from vibroimpact.calibration.noise import standard_deviations
-from vibroimpact.calibration.observations import Observations, from_heights, from_table
-from vibroimpact.calibration.position_record import impacts_in_position
+from vibroimpact.calibration.contact_law.calibrate import calibrate
+from vibroimpact.calibration.contact_law.calibration import Calibration
+from vibroimpact.calibration.observed.noise import standard_deviations
+from vibroimpact.calibration.observed.observations import Observations, from_heights, from_table
+from vibroimpact.calibration.records.force_record import impacts_in_force
+from vibroimpact.calibration.records.joint_flights import _CONTACT_DEVIATION
+from vibroimpact.calibration.records.position_record import impacts_in_position
 from vibroimpact.contact.laws.newton import Newton
 
 GRAVITY, RADIUS, TOP = 9.8, 0.025, 4.0

@@ -14,9 +14,9 @@ from scipy.stats import binom
 
 import vibroimpact as vi
 from support import one_in, plain_case
-from vibroimpact.calibration.force_record import impacts_in_force
-from vibroimpact.calibration.noise import standard_deviations
-from vibroimpact.calibration.observations import Observations
+from vibroimpact.calibration.observed.noise import standard_deviations
+from vibroimpact.calibration.observed.observations import Observations
+from vibroimpact.calibration.records.force_record import impacts_in_force
 
 TIMES = 120
 PART = 0.02  # of the largest force, that a drift comes to

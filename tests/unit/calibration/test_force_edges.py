@@ -11,9 +11,9 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.calibration.force_record import impacts_in_force
-from vibroimpact.calibration.noise import standard_deviations
-from vibroimpact.calibration.observations import Observations
+from vibroimpact.calibration.observed.noise import standard_deviations
+from vibroimpact.calibration.observed.observations import Observations
+from vibroimpact.calibration.records.force_record import impacts_in_force
 
 LAWS = {
     "adams-impact": {"law": "adams-impact", "damping_max": 200.0},

@@ -12,8 +12,8 @@ import pytest
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
-from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.law_report import match_words
+from vibroimpact.calibration.contact_law.calibration import Calibration
+from vibroimpact.calibration.contact_law.law_report import match_words
 
 NEWTON = {"law": "newton", "restitution": 0.9}
 SPEEDS = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]

@@ -16,10 +16,10 @@ import tomli_w
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
-from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.noise import scaled, standard_deviations
-from vibroimpact.calibration.observations import Observations
-from vibroimpact.calibration.position_record import impacts_in_position
+from vibroimpact.calibration.contact_law.calibration import Calibration
+from vibroimpact.calibration.observed.noise import scaled, standard_deviations
+from vibroimpact.calibration.observed.observations import Observations
+from vibroimpact.calibration.records.position_record import impacts_in_position
 
 GRAVITY, RADIUS = 9.80665, 0.008
 HERTZ = 5.5e-5  # s, of steel on steel at 1 m/s

@@ -10,8 +10,8 @@ import pytest
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
-from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.overlay import Overlay
+from vibroimpact.calibration.contact_law.calibration import Calibration
+from vibroimpact.calibration.fit.overlay import Overlay
 from vibroimpact.calibration.record_chart import record_chart
 from vibroimpact.charts.chart import Chart
 from vibroimpact.charts.marks import Line, Points

@@ -26,12 +26,12 @@ from vibroimpact.bodies.ball import HOLLOW, SOLID, ball_volume, mean_density
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
-from vibroimpact.cases.keys import with_values
-from vibroimpact.cases.pair import ball_of, contact_pair, resized, sphere_density
+from vibroimpact.cases.rigid.pair import ball_of, contact_pair, resized, sphere_density
+from vibroimpact.cases.sections.keys import with_values
 from vibroimpact.exporting.formats import adams_solver, exudyn, lammps, matlab, mujoco, yade
 from vibroimpact.exporting.load_drop import drop_of_result
 from vibroimpact.runs.case_explained import case_explained
-from vibroimpact.studies.compute_points import compute_points
+from vibroimpact.studies.computation.compute_points import compute_points
 from vibroimpact.studies.report.slip_chart import slip_chart
 
 CELLULOID = {"density": 1400.0, "youngs_modulus": 2.5e9, "poissons_ratio": 0.35}

@@ -11,8 +11,8 @@ import pytest
 
 import vibroimpact as vi
 from vibroimpact.cases.changed_text import changed_text
-from vibroimpact.cases.keys import with_values
 from vibroimpact.cases.reader import case_text
+from vibroimpact.cases.sections.keys import with_values
 
 CHANGES: list[dict[str, Any]] = [
     {"name": 'a "name" # of [mine]\twith \\ and é'},

@@ -8,8 +8,8 @@ import pytest
 
 import vibroimpact as vi
 from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
-from vibroimpact.cases.pair import contact_pair
-from vibroimpact.cases.rigid_problem import contact_laws_of
+from vibroimpact.cases.rigid.pair import contact_pair
+from vibroimpact.cases.rigid.rigid_problem import contact_laws_of
 from vibroimpact.contact.law import ContactLaw
 
 

@@ -26,7 +26,7 @@ from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.cases.fields.elastic_body import ElementKind
 from vibroimpact.cases.fields.supports import EdgeName
 from vibroimpact.cli import main
-from vibroimpact.structures.lattice import SOLID_KINDS, box_mesh
+from vibroimpact.structures.finite_elements.lattice import SOLID_KINDS, box_mesh
 from vibroimpact.structures.recipe import model_key
 from vibroimpact.structures.supports.bar import Bar
 from vibroimpact.structures.supports.edge import EDGES
@@ -229,7 +229,9 @@ def test_body_that_cannot_be_made(changes: dict, message: str) -> None:
 
 
 def test_too_large_for_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("vibroimpact.structures.free_memory.free_memory", lambda: 1e6)
+    monkeypatch.setattr(
+        "vibroimpact.structures.finite_elements.free_memory.free_memory", lambda: 1e6
+    )
     with pytest.raises(
         vi.InputError,
         match=r"the factors of .* degrees of freedom need about .* GB of memory, and 0.001 GB "

@@ -18,7 +18,7 @@ from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.cases.build import problem_of, resolved_case
 from vibroimpact.cases.case import case_schema
-from vibroimpact.cases.rigid_problem import in_liquid
+from vibroimpact.cases.rigid.rigid_problem import in_liquid
 from vibroimpact.cli import main
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.formats import exudyn, lammps

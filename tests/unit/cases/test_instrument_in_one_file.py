@@ -55,7 +55,7 @@ folder.__path__.append(sys.argv[1])
 import vibroimpact as vi
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import case_schema
-from vibroimpact.cases.keys import find_quantity
+from vibroimpact.cases.sections.keys import find_quantity
 from vibroimpact.cases.template import case_template
 from vibroimpact.runs.setup import setup_rows
 

@@ -9,11 +9,12 @@ from typing import Annotated, Any
 import pytest
 
 import vibroimpact as vi
-from vibroimpact.cases import keys, resolved_types, template
+from vibroimpact.cases import template
 from vibroimpact.cases.fields.material import InlineMaterial
 from vibroimpact.cases.fields.quantities import Quantity, UncertainQuantity, quantity_of
 from vibroimpact.cases.fields.section import Section
-from vibroimpact.cases.schema import SECTIONS, DropSection
+from vibroimpact.cases.sections import keys, resolved_types
+from vibroimpact.cases.sections.schema import SECTIONS, DropSection
 from vibroimpact.ranges import Range
 
 

@@ -20,14 +20,14 @@ from studies import study_table
 from support import plain_case
 from vibrating import STIFFNESS, drop_on, modes_of
 from vibroimpact.cases.build import resolved_case
-from vibroimpact.cases.conditions import Conditions, DropSummary
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
-from vibroimpact.cases.limit import limits, numbers_of
+from vibroimpact.cases.limits.conditions import Conditions, DropSummary
+from vibroimpact.cases.limits.limit import limits, numbers_of
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.report.terminal_report import terminal_report
 from vibroimpact.results.result import result_of
-from vibroimpact.studies.compute_study import compute_study
+from vibroimpact.studies.computation.compute_study import compute_study
 from vibroimpact.units.reading import to_si
 
 STEEL = {"density": 7850, "youngs_modulus": 2.1e11, "poissons_ratio": 0.3, "yield_strength": 1e12}

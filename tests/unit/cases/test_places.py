@@ -15,7 +15,7 @@ import vibroimpact as vi
 from support import plain_case
 from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.cli import app
-from vibroimpact.structures.lattice import box_mesh
+from vibroimpact.structures.finite_elements.lattice import box_mesh
 
 POINT = {"type": "point", "position": [0.0, 0.0]}
 SIZE = [0.52, 0.42, 0.008]

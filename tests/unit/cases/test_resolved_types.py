@@ -10,13 +10,13 @@ import pytest
 
 import vibroimpact as vi
 from vibroimpact.cases.build import resolved_case
-from vibroimpact.cases.resolved_types import TYPES_FILE, resolved_types
+from vibroimpact.cases.sections.resolved_types import TYPES_FILE, resolved_types
 from vibroimpact.resolved_case import ResolvedCase, ResolvedSensor
 
 
 def test_the_file_is_that_of_the_schema() -> None:
     assert TYPES_FILE.read_text(encoding="utf-8") == resolved_types(), (
-        "run: python -m vibroimpact.cases.resolved_types"
+        "run: python -m vibroimpact.cases.sections.resolved_types"
     )
 
 

@@ -21,11 +21,11 @@ from vibroimpact.cases.wrong_units.detect import slips, swept_slips
 from vibroimpact.cases.wrong_units.hertz_estimate import HertzEstimate
 from vibroimpact.cli import app
 from vibroimpact.results.result import result_of
-from vibroimpact.studies.compute_study import compute_study
+from vibroimpact.studies.computation.compute_study import compute_study
+from vibroimpact.studies.computation.study import load_study
+from vibroimpact.studies.planning.sweep_file import sweep_of
+from vibroimpact.studies.planning.unit_slips import axis_slips
 from vibroimpact.studies.report.tables import doubt_sentences
-from vibroimpact.studies.study import load_study
-from vibroimpact.studies.sweep_file import sweep_of
-from vibroimpact.studies.unit_slips import axis_slips
 
 STEEL = {"density": 7850, "youngs_modulus": "210 GPa", "poissons_ratio": 0.3}
 ACRYLIC = {"density": 1190, "youngs_modulus": "3.3 GPa", "poissons_ratio": 0.37}

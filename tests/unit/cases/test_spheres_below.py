@@ -10,10 +10,10 @@ import pytest
 
 import vibroimpact as vi
 from vibroimpact.cases.build import resolved_case
-from vibroimpact.cases.conditions import Conditions, DropSummary
-from vibroimpact.cases.pair import contact_pair
+from vibroimpact.cases.limits.conditions import Conditions, DropSummary
+from vibroimpact.cases.rigid.pair import contact_pair
 from vibroimpact.exporting.load_drop import load_drop
-from vibroimpact.studies.compute_study import compute_study
+from vibroimpact.studies.computation.compute_study import compute_study
 
 STEEL, GLASS = "steel-paper", "glass-chung-ooi"
 

@@ -17,8 +17,8 @@ from ball_records import heard
 from support import plain_case
 from vibroimpact.calibration.bounces.report import impact_table, law_sentences
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
-from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.inputs import EARTH
+from vibroimpact.calibration.contact_law.calibration import Calibration
+from vibroimpact.calibration.observed.inputs import EARTH
 from vibroimpact.cli import main
 from vibroimpact.units.display import known_text
 from vibroimpact.units.written import read_written

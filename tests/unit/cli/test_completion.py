@@ -18,7 +18,7 @@ from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cli import main
 from vibroimpact.cli.completion import VARIABLE, WORDS, complete_case, joined
 from vibroimpact.cli.completion_words import completion_words
-from vibroimpact.studies.design import designs
+from vibroimpact.studies.planning.design import designs
 
 LAWS = list(vi.laws.contact_laws())
 MATERIALS = list(vi.materials.material_library())

@@ -22,7 +22,7 @@ from knock_data import write_knocks
 from studies import study_table
 from support import one_in, plain_case
 from vibroimpact.bayes_error.bound import bound_of
-from vibroimpact.calibration.calibrate import calibrate
+from vibroimpact.calibration.contact_law.calibrate import calibrate
 from vibroimpact.cases.elastic.modes import compute_modes
 from vibroimpact.cli import app, main
 from vibroimpact.cli.case_text import shipped_cases_table
@@ -42,9 +42,9 @@ from vibroimpact.report.terminal_report import terminal_report
 from vibroimpact.report.terminal_table import facts
 from vibroimpact.results.result import result_of
 from vibroimpact.runs.case_explained import case_explained
-from vibroimpact.studies.compute_study import compute_study
-from vibroimpact.studies.explain_sweep import explain_sweep
-from vibroimpact.studies.sweep_file import sweep_of
+from vibroimpact.studies.computation.compute_study import compute_study
+from vibroimpact.studies.planning.explain_sweep import explain_sweep
+from vibroimpact.studies.planning.sweep_file import sweep_of
 
 _NUMBER = re.compile(
     r"(?<![\w.])[-\u2212+]?\d+(?:\.\d+)?(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+|e[-+]?\d+)?(?![\w.]*\d)"

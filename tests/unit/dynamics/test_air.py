@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.cases.keys import with_values
+from vibroimpact.cases.sections.keys import with_values
 from vibroimpact.dynamics.columns import LEDGER, OBLIQUE_LEDGER, VIBRATION_LEDGER
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.structures.modal_model import ModalBasis

@@ -12,10 +12,10 @@ import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.cases.build import resolved_case
-from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.expected import expected_of
-from vibroimpact.cases.keys import with_values
-from vibroimpact.cases.limit import numbers_of
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import numbers_of
+from vibroimpact.cases.sections.keys import with_values
 from vibroimpact.dynamics.liquid import restitution_kept
 from vibroimpact.exporting.load_drop import load_drop as drop_in_folder
 from vibroimpact.exporting.rigid_drop import as_rigid

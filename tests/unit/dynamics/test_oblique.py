@@ -12,7 +12,7 @@ import pytest
 
 import vibroimpact as vi
 from vibroimpact.arrays import Floats
-from vibroimpact.cases.keys import with_values
+from vibroimpact.cases.sections.keys import with_values
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.dynamics.columns import LEDGER, OBLIQUE_LEDGER, VIBRATION_LEDGER
 from vibroimpact.dynamics.oblique import oblique_motion, sliding

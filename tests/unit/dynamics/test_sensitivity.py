@@ -14,8 +14,8 @@ import vibroimpact as vi
 from support import plain_case
 from vibrating import STIFFNESS, drop_on, random_modes
 from vibroimpact.cases.build import resolved_case
-from vibroimpact.cases.conditions import DropSummary
 from vibroimpact.cases.doubts import doubts
+from vibroimpact.cases.limits.conditions import DropSummary
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.report.terminal_report import terminal_report
 from vibroimpact.results.result import Result, result_of

@@ -15,7 +15,7 @@ from scipy import signal
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.cases.keys import with_values
+from vibroimpact.cases.sections.keys import with_values
 from vibroimpact.charts.marks import Line
 from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
 from vibroimpact.contact.laws.newton import Newton

@@ -19,7 +19,7 @@ from vibroimpact.measurements.table_file import read_table_file
 from vibroimpact.meshes.mesh_file import load_mesh
 from vibroimpact.meshes.selection import Selection
 from vibroimpact.runs.case_explained import case_explained
-from vibroimpact.structures.lattice import box_mesh
+from vibroimpact.structures.finite_elements.lattice import box_mesh
 
 NUMBER = 4000
 NODES = "*NODE\n" + "".join(

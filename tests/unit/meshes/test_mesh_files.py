@@ -19,8 +19,8 @@ from vibroimpact.meshes.read_nastran import read_nastran
 from vibroimpact.meshes.write_abaqus import write_abaqus
 from vibroimpact.meshes.write_nastran import nastran_number, write_nastran
 from vibroimpact.meshes.write_vtu import write_vtu
-from vibroimpact.structures.element_kinds import ELEMENT_KINDS
-from vibroimpact.structures.mesh import ElementBlock, Mesh
+from vibroimpact.structures.finite_elements.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.finite_elements.mesh import ElementBlock, Mesh
 
 STEEL = Material(density=7850.0, youngs_modulus=210e9, poissons_ratio=0.3, name="steel")
 MSH = (

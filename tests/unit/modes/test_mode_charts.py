@@ -21,9 +21,9 @@ from vibroimpact.modes.charts import mode_charts
 from vibroimpact.modes.scene import mode_scene
 from vibroimpact.modes.tables import mode_table
 from vibroimpact.report.page_of_report import page_of_report
-from vibroimpact.structures.lattice import box_mesh
-from vibroimpact.structures.mesh import ElementBlock, Mesh
-from vibroimpact.structures.outline import outline
+from vibroimpact.structures.finite_elements.lattice import box_mesh
+from vibroimpact.structures.finite_elements.mesh import ElementBlock, Mesh
+from vibroimpact.structures.finite_elements.outline import outline
 
 HOSTILE = ["<img src=x onerror=alert(1)>", r"$\frac{a$", "s" * 200]
 

@@ -24,7 +24,7 @@ from vibroimpact.errors import MOST_LINES, ComputationError, InputError
 from vibroimpact.files.result_folder import check_free
 from vibroimpact.results.result import result_of
 from vibroimpact.runs.charts import run_charts
-from vibroimpact.studies.compute_points import compute_points
+from vibroimpact.studies.computation.compute_points import compute_points
 
 ESCAPE = "\x1b[31m"
 SENSOR = {"name": "a", "position": [0, 0]}

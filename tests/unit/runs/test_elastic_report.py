@@ -45,7 +45,7 @@ from vibroimpact.runs.paraview import write_paraview
 from vibroimpact.runs.scene import exaggeration, scene_of
 from vibroimpact.runs.spectrum import amplitude_spectrum
 from vibroimpact.runs.tables import impact_table
-from vibroimpact.structures.lattice import box_mesh
+from vibroimpact.structures.finite_elements.lattice import box_mesh
 from written_results import write_result
 
 SPHERE = {

@@ -13,7 +13,7 @@ import pyuff
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
-from vibroimpact.calibration.calibration import Calibration
+from vibroimpact.calibration.contact_law.calibration import Calibration
 from vibroimpact.exporting.export_result import export_result
 from vibroimpact.measurements.record_file import read_universal_record
 from vibroimpact.measurements.universal_file import is_universal, read_universal_file

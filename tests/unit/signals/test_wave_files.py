@@ -208,7 +208,9 @@ def test_what_is_no_wave_is_not_read(tmp_path: Path) -> None:
 def test_a_record_that_needs_too_much_memory(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("vibroimpact.structures.free_memory.free_memory", lambda: 5000.0)
+    monkeypatch.setattr(
+        "vibroimpact.structures.finite_elements.free_memory.free_memory", lambda: 5000.0
+    )
     with pytest.raises(
         vi.InputError, match="the samples of a channel need about 8e-06 GB of memory"
     ):

@@ -99,7 +99,9 @@ def test_samples_of_a_long_run_are_told_and_refused_where_they_do_not_fit(
     (told,) = (one for one in describe_costs(case) if "samples" in one)
     assert told.startswith("the samples of 6 sensors, 1.8e+08, take about")
     assert "GB of memory and 1.6 GB on disk" in told
-    monkeypatch.setattr("vibroimpact.structures.free_memory.free_memory", lambda: 1e9)
+    monkeypatch.setattr(
+        "vibroimpact.structures.finite_elements.free_memory.free_memory", lambda: 1e9
+    )
     with pytest.raises(
         InputError,
         match=r"about 1\.7 GB of memory, and 1 GB are free, of which 80 % .*; give a shorter "

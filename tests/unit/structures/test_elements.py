@@ -13,18 +13,31 @@ from solid_meshes import PYRAMIDS, pyramid_box
 from support import one_in
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
-from vibroimpact.structures.element_kinds import ELEMENT_KINDS, ElementKind
-from vibroimpact.structures.geometry import check_mesh, determinants, mass_properties
-from vibroimpact.structures.lattice import SOLID_KINDS, box_mesh
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.element_kinds import ELEMENT_KINDS, ElementKind
+from vibroimpact.structures.finite_elements.geometry import (
+    check_mesh,
+    determinants,
+    mass_properties,
+)
+from vibroimpact.structures.finite_elements.lattice import SOLID_KINDS, box_mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.plate_mesh import plate_mesh, solid_plate_mesh
+from vibroimpact.structures.finite_elements.rectangle import Disc
+from vibroimpact.structures.finite_elements.sphere_mesh import sphere_mesh
+from vibroimpact.structures.finite_elements.structure import (
+    Structure,
+    plate_structure,
+    solid_structure,
+)
+from vibroimpact.structures.finite_elements.surface import (
+    Faces,
+    lower_nodes,
+    outer_faces,
+    surface_motion,
+)
 from vibroimpact.structures.modes import ElasticSystem
-from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
-from vibroimpact.structures.rectangle import Disc
-from vibroimpact.structures.sphere_mesh import sphere_mesh
-from vibroimpact.structures.structure import Structure, plate_structure, solid_structure
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.support import held_by
-from vibroimpact.structures.surface import Faces, lower_nodes, outer_faces, surface_motion
 
 STEEL = Material(7850.0, 210e9, 0.3)
 BOXES = ("tet4", "tet10", "wedge6", "wedge15", "hex8", "hex20", "hex27")

@@ -21,14 +21,14 @@ from vibroimpact.materials import Material
 from vibroimpact.meshes.mesh_file import load_mesh
 from vibroimpact.meshes.write_abaqus import write_abaqus
 from vibroimpact.meshes.write_nastran import write_nastran
-from vibroimpact.structures.geometry import check_mesh
-from vibroimpact.structures.joints import solved_joints
-from vibroimpact.structures.lattice import box_mesh
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.geometry import check_mesh
+from vibroimpact.structures.finite_elements.joints import solved_joints
+from vibroimpact.structures.finite_elements.lattice import box_mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.parts import number_of_parts
+from vibroimpact.structures.finite_elements.structure import solid_structure
 from vibroimpact.structures.mirrored import elastic_system
-from vibroimpact.structures.parts import number_of_parts
 from vibroimpact.structures.recipe import ImportedMesh, Recipe, computed_model
-from vibroimpact.structures.structure import solid_structure
 from vibroimpact.structures.support_force import computed_support_forces
 from vibroimpact.structures.supports.edge import Edge
 from vibroimpact.structures.supports.support import Support, held_by
@@ -460,7 +460,7 @@ def passing_as_joined(mesh: Mesh) -> Mesh:
     """A mesh whose parts pass as joined, though no joint moves anything."""
     from scipy.sparse import csr_array
 
-    from vibroimpact.structures.joints import Joints
+    from vibroimpact.structures.finite_elements.joints import Joints
 
     first, second = mesh.node_sets["nodes0"][0], mesh.node_sets["nodes1"][0]
     row = np.zeros((1, 3 * len(mesh.nodes)))

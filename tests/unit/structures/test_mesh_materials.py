@@ -22,11 +22,11 @@ from vibroimpact.materials import Material, find_material
 from vibroimpact.meshes.element_materials import with_element_materials
 from vibroimpact.meshes.left_out import remarks_of
 from vibroimpact.modes.document import mesh_facts
-from vibroimpact.structures.lattice import box_mesh
-from vibroimpact.structures.mesh import Mesh
-from vibroimpact.structures.stated_materials import StatedMaterial, StatedMaterials
+from vibroimpact.structures.finite_elements.lattice import box_mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.stated_materials import StatedMaterial, StatedMaterials
+from vibroimpact.structures.finite_elements.structure import solid_structure
 from vibroimpact.structures.static_compliance import computed_compliance
-from vibroimpact.structures.structure import solid_structure
 
 STEEL = Material(7850.0, 210e9, 0.3, name="steel")
 RUBBER = Material(1100.0, 10e6, 0.45, name="rubber")

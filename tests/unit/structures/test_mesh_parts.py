@@ -17,11 +17,11 @@ from support import plain_case
 from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
-from vibroimpact.structures.geometry import check_mesh
-from vibroimpact.structures.lattice import box_mesh
-from vibroimpact.structures.mesh import Mesh
-from vibroimpact.structures.parts import number_of_parts, part_at
-from vibroimpact.structures.stated_materials import StatedMaterial, StatedMaterials
+from vibroimpact.structures.finite_elements.geometry import check_mesh
+from vibroimpact.structures.finite_elements.lattice import box_mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.parts import number_of_parts, part_at
+from vibroimpact.structures.finite_elements.stated_materials import StatedMaterial, StatedMaterials
 
 SIZE = (0.2, 0.1, 0.01)
 STEEL = {"density": 7850, "youngs_modulus": 210e9, "poissons_ratio": 0.3}

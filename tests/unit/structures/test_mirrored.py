@@ -12,11 +12,13 @@ from scipy.sparse.linalg import eigsh
 from vibroimpact.errors import InputError
 from vibroimpact.materials import find_material
 from vibroimpact.structures import modes as of_modes
-from vibroimpact.structures.factor import Factors
+from vibroimpact.structures.finite_elements.factor import Factors
+from vibroimpact.structures.finite_elements.plate_mesh import plate_mesh, solid_plate_mesh
+from vibroimpact.structures.finite_elements.sphere_mesh import sphere_mesh
+from vibroimpact.structures.finite_elements.structure import plate_structure, solid_structure
 from vibroimpact.structures.mirror import mirror_planes, symmetry_bases
 from vibroimpact.structures.mirrored import MirroredSystem, elastic_system
 from vibroimpact.structures.modes import ElasticSystem
-from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
 from vibroimpact.structures.recipe import (
     Recipe,
     Reduction,
@@ -24,8 +26,6 @@ from vibroimpact.structures.recipe import (
     computed_model,
     mesh_features,
 )
-from vibroimpact.structures.sphere_mesh import sphere_mesh
-from vibroimpact.structures.structure import plate_structure, solid_structure
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.supports.edge import Edge
 from vibroimpact.structures.supports.patch import Patch

@@ -8,19 +8,20 @@ from scipy.sparse import csr_array
 
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.materials import Material
-from vibroimpact.structures import free_memory, modes
-from vibroimpact.structures.factor import Factors, factor_entries, nested_dissection
-from vibroimpact.structures.lattice import box_mesh
-from vibroimpact.structures.mesh import ElementBlock, Mesh
-from vibroimpact.structures.modes import ElasticSystem
-from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
-from vibroimpact.structures.sphere_mesh import sphere_mesh
-from vibroimpact.structures.structure import (
+from vibroimpact.structures import modes
+from vibroimpact.structures.finite_elements import free_memory
+from vibroimpact.structures.finite_elements.factor import Factors, factor_entries, nested_dissection
+from vibroimpact.structures.finite_elements.lattice import box_mesh
+from vibroimpact.structures.finite_elements.mesh import ElementBlock, Mesh
+from vibroimpact.structures.finite_elements.plate_mesh import plate_mesh, solid_plate_mesh
+from vibroimpact.structures.finite_elements.sphere_mesh import sphere_mesh
+from vibroimpact.structures.finite_elements.structure import (
     Structure,
     node_adjacency,
     plate_structure,
     solid_structure,
 )
+from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.point import Point
 from vibroimpact.structures.supports.spring import Spring

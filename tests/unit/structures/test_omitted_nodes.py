@@ -11,12 +11,12 @@ from solid_meshes import pyramid_box
 from vibroimpact.materials import Material
 from vibroimpact.meshes.read_nastran import read_nastran
 from vibroimpact.meshes.write_nastran import write_nastran
-from vibroimpact.structures.element_kinds import ELEMENT_KINDS
-from vibroimpact.structures.geometry import check_mesh
-from vibroimpact.structures.lattice import box_mesh
-from vibroimpact.structures.mesh import ElementBlock, Mesh
+from vibroimpact.structures.finite_elements.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.finite_elements.geometry import check_mesh
+from vibroimpact.structures.finite_elements.lattice import box_mesh
+from vibroimpact.structures.finite_elements.mesh import ElementBlock, Mesh
+from vibroimpact.structures.finite_elements.structure import solid_structure
 from vibroimpact.structures.mirrored import elastic_system
-from vibroimpact.structures.structure import solid_structure
 from vibroimpact.structures.supports.support import held_by
 
 STEEL = Material(7850.0, 210e9, 0.3)

@@ -13,19 +13,19 @@ import pytest
 import vibroimpact as vi
 from support import one_in, plain_case
 from vibroimpact.bodies.elastic import plate_recipe
-from vibroimpact.cases.conditions import DropSummary
 from vibroimpact.cases.doubts import doubts
+from vibroimpact.cases.limits.conditions import DropSummary
 from vibroimpact.cases.validity.plate_waves import plate_theory_error
 from vibroimpact.dynamics.truncation import time_of_contact
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.results.result import result_of
+from vibroimpact.structures.finite_elements.surface import slope_divergence
 from vibroimpact.structures.plate_compliance import plate_theory_average
 from vibroimpact.structures.plate_face import face_shapes
 from vibroimpact.structures.plate_waves import bending_factor, wave_numbers
 from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Reduction, modal_model_of
 from vibroimpact.structures.supports.edge import EDGES, Edge
-from vibroimpact.structures.surface import slope_divergence
 
 STEEL = Material(7850.0, 210e9, 0.3)
 PMMA = {"density": 1190.0, "youngs_modulus": 3.3e9, "poissons_ratio": 0.37}

@@ -13,8 +13,8 @@ import pytest
 
 import vibroimpact as vi
 from vibroimpact.bodies.elastic import plate_recipe
-from vibroimpact.cases.conditions import DropSummary
 from vibroimpact.cases.doubts import doubts
+from vibroimpact.cases.limits.conditions import DropSummary
 from vibroimpact.cases.validity.plate_mesh import PLATE_MESH_COMPLIANCE, plate_mesh_error
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.errors import InputError
@@ -22,8 +22,8 @@ from vibroimpact.materials import Material
 from vibroimpact.results.result import result_of
 from vibroimpact.results.summary import summary_of
 from vibroimpact.runs.deformation import deformation_rows
+from vibroimpact.structures.finite_elements.plate_mesh import plate_mesh
 from vibroimpact.structures.mesh_compliance import mesh_compliance
-from vibroimpact.structures.plate_mesh import plate_mesh
 from vibroimpact.structures.recipe import Reduction
 from vibroimpact.structures.static_compliance import computed_compliance
 from vibroimpact.structures.supports.edge import EDGES, Edge

@@ -8,6 +8,8 @@ import pytest
 from support import one_in
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
+from vibroimpact.structures.finite_elements.structure import Structure
+from vibroimpact.structures.finite_elements.surface import surface_motion
 from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.recipe import (
     PlateOfPlates,
@@ -18,12 +20,10 @@ from vibroimpact.structures.recipe import (
     computed_model,
 )
 from vibroimpact.structures.reduction import attachment_modes, craig_bampton, projected
-from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.supports.edge import Edge
 from vibroimpact.structures.supports.patch import Patch
 from vibroimpact.structures.supports.support import Support, held_by
-from vibroimpact.structures.surface import surface_motion
 
 STEEL = Material(7850.0, 210e9, 0.3)
 EDGE = (Edge("x-min", "clamped"),)

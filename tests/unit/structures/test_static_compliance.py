@@ -13,9 +13,9 @@ import pytest
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures import static_compliance as module
-from vibroimpact.structures.disc_quadrature import HERTZ, UNIFORM, pressure_rule
-from vibroimpact.structures.lattice import box_mesh
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.disc_quadrature import HERTZ, UNIFORM, pressure_rule
+from vibroimpact.structures.finite_elements.lattice import box_mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
 from vibroimpact.structures.recipe import (
     ImportedMesh,
     PlateOfPlates,

@@ -14,7 +14,7 @@ import pytest
 from vibroimpact.materials import Material
 from vibroimpact.structures import recipe as recipes
 from vibroimpact.structures import store
-from vibroimpact.structures.mesh import ElementBlock, Mesh
+from vibroimpact.structures.finite_elements.mesh import ElementBlock, Mesh
 from vibroimpact.structures.modal_model import ModalModel
 from vibroimpact.structures.recipe import (
     ImportedMesh,

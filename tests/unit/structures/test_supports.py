@@ -11,13 +11,14 @@ from scipy.linalg import eigh
 
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
-from vibroimpact.structures.bed import bed_stiffness, patch_bed
-from vibroimpact.structures.disc_quadrature import disc_rule
-from vibroimpact.structures.lattice import box_mesh
+from vibroimpact.structures.finite_elements.bed import bed_stiffness, patch_bed
+from vibroimpact.structures.finite_elements.disc_quadrature import disc_rule
+from vibroimpact.structures.finite_elements.lattice import box_mesh
+from vibroimpact.structures.finite_elements.sphere_mesh import sphere_mesh
+from vibroimpact.structures.finite_elements.structure import Structure, solid_structure
+from vibroimpact.structures.finite_elements.surface import lower_nodes, surface_motion
 from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids
-from vibroimpact.structures.sphere_mesh import sphere_mesh
-from vibroimpact.structures.structure import Structure, solid_structure
 from vibroimpact.structures.supports.bar import Bar, column_matrices
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.node_set import NodeSet
@@ -25,7 +26,6 @@ from vibroimpact.structures.supports.patch import Patch, RectangularPatch
 from vibroimpact.structures.supports.point import Point
 from vibroimpact.structures.supports.spring import Spring
 from vibroimpact.structures.supports.support import Support, held_by
-from vibroimpact.structures.surface import lower_nodes, surface_motion
 
 STEEL = Material(7850.0, 210e9, 0.3)
 WEIGHTLESS = Material(1e-6, 210e9, 0.3)

@@ -15,10 +15,10 @@ import vibroimpact as vi
 from studies import coal_on_steel
 from vibroimpact.dynamics.first_touch import first_touch
 from vibroimpact.errors import ComputationError
-from vibroimpact.studies.axes import Listed, Normal, Spaced
-from vibroimpact.studies.compute_points import compute_points
-from vibroimpact.studies.population import Population
-from vibroimpact.studies.window import Window
+from vibroimpact.studies.computation.compute_points import compute_points
+from vibroimpact.studies.planning.axes import Listed, Normal, Spaced
+from vibroimpact.studies.planning.population import Population
+from vibroimpact.studies.planning.window import Window
 
 OWN = {
     "coal": {"sphere.material.density": Normal(1380.0, 60.0, 4)},

@@ -11,7 +11,7 @@ from scipy import stats
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.studies.explain_sweep import sweep_document
+from vibroimpact.studies.planning.explain_sweep import sweep_document
 from vibroimpact.studies.report.card import data_card
 
 FACTOR = {"distribution": "lognormal", "mean": 1.0, "standard_deviation": 0.2}

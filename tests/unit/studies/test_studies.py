@@ -13,12 +13,17 @@ import pytest
 from scipy import stats
 
 import vibroimpact as vi
-from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
-from vibroimpact.studies.chunk_file import ChunkResult, checksum, read_chunk, write_chunk
-from vibroimpact.studies.design import Asked, designs, find_design
-from vibroimpact.studies.ledger import LEDGER, Span, is_held, make_ledger, open_ledger
-from vibroimpact.studies.plan import Plan
-from vibroimpact.studies.population import Population
+from vibroimpact.studies.computation.chunk_file import (
+    ChunkResult,
+    checksum,
+    read_chunk,
+    write_chunk,
+)
+from vibroimpact.studies.computation.ledger import LEDGER, Span, is_held, make_ledger, open_ledger
+from vibroimpact.studies.planning.axes import Axis, Listed, Normal, Spaced
+from vibroimpact.studies.planning.design import Asked, designs, find_design
+from vibroimpact.studies.planning.plan import Plan
+from vibroimpact.studies.planning.population import Population
 
 PARTS = (np.arange(400) + 0.5) / 400
 AXES: dict[str, Axis] = {

@@ -29,14 +29,14 @@ from vibroimpact.charts.pack import pack
 from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.cli import main
 from vibroimpact.report.page import palette
-from vibroimpact.studies import compute_study as computing
-from vibroimpact.studies.chunk_file import ChunkResult
-from vibroimpact.studies.drop_variables import OUTCOME
+from vibroimpact.studies.computation import compute_study as computing
+from vibroimpact.studies.computation.chunk_file import ChunkResult
+from vibroimpact.studies.computation.study import Study, load_study
+from vibroimpact.studies.planning.drop_variables import OUTCOME
+from vibroimpact.studies.planning.sweep_file import sweep_of
 from vibroimpact.studies.report.outputs import study_outputs
 from vibroimpact.studies.report.sensitivity_table import sensitivity_of
 from vibroimpact.studies.run_sweep import run_sweep
-from vibroimpact.studies.study import Study, load_study
-from vibroimpact.studies.sweep_file import sweep_of
 
 LOSSY = {"law": "lankarani-nikravesh", "restitution": 0.7}
 RADII = {"from": "5 mm", "to": "50 mm", "scale": "log"}
@@ -487,7 +487,7 @@ def test_no_figure_is_drawn_for_a_report(drawn: Study) -> None:
 import sys
 from pathlib import Path
 from vibroimpact.studies.report.write_report import write_study_report
-from vibroimpact.studies.study import load_study
+from vibroimpact.studies.computation.study import load_study
 folder = Path(sys.argv[1])
 write_study_report(load_study(folder))
 print([name for name in sys.modules if name.split(".")[0] in ("matplotlib", "plotly")])

@@ -9,7 +9,7 @@ import pytest
 import vibroimpact as vi
 from studies import RANDOM, study_table
 from vibroimpact.errors import InputError
-from vibroimpact.studies.compute_study import chunk_size, compute_study, least_memory
+from vibroimpact.studies.computation.compute_study import chunk_size, compute_study, least_memory
 
 LARGE = vi.studies.sweep_of(study_table({**RANDOM, "samples": 100_000}))
 

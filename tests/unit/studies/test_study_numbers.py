@@ -7,8 +7,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vibroimpact.studies.percentiles import spread_of
-from vibroimpact.studies.sensitivity import one_at_a_time, rank_correlations
+from vibroimpact.studies.report.percentiles import spread_of
+from vibroimpact.studies.report.sensitivity import one_at_a_time, rank_correlations
 
 
 def test_spread_is_numpys_and_passes_over_what_is_not_there() -> None:

@@ -22,9 +22,11 @@ from vibroimpact.dynamics.response import Outcome
 from vibroimpact.errors import InputError
 from vibroimpact.regenerate import remake_report
 from vibroimpact.report.terminal_report import terminal_report
-from vibroimpact.studies import compute_study as computing
-from vibroimpact.studies.chunk_file import ChunkResult
-from vibroimpact.studies.drop_variables import OUTCOME
+from vibroimpact.studies.computation import compute_study as computing
+from vibroimpact.studies.computation.chunk_file import ChunkResult
+from vibroimpact.studies.computation.study import Study, load_study
+from vibroimpact.studies.planning.drop_variables import OUTCOME
+from vibroimpact.studies.planning.sweep_file import sweep_of
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.outputs import (
     drawn_outputs,
@@ -36,8 +38,6 @@ from vibroimpact.studies.report.scales import key_axis, places
 from vibroimpact.studies.report.sensitivity_table import sensitivity_of, strongest
 from vibroimpact.studies.report.tables import percentiles_table, sensitivity_table, without_effect
 from vibroimpact.studies.run_sweep import run_sweep
-from vibroimpact.studies.study import Study, load_study
-from vibroimpact.studies.sweep_file import sweep_of
 
 LOSSY = {"law": "lankarani-nikravesh", "restitution": 0.7}
 RADII = {"from": "5 mm", "to": "50 mm", "scale": "log"}

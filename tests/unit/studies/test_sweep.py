@@ -20,14 +20,14 @@ import xarray as xr
 import vibroimpact as vi
 from studies import OVER, RANDOM, study_file, study_table
 from support import plain_case
-from vibroimpact.studies import compute_points as compute_points_module
-from vibroimpact.studies.compute_points import compute_points
-from vibroimpact.studies.compute_study import chunk_size, compute_study
-from vibroimpact.studies.dask_workers import dask_workers
-from vibroimpact.studies.ledger import Span
-from vibroimpact.studies.run_chunks import run_chunks
-from vibroimpact.studies.swept_keys import case_at
-from vibroimpact.studies.workers import processes, this_process
+from vibroimpact.studies.computation import compute_points as compute_points_module
+from vibroimpact.studies.computation.compute_points import compute_points
+from vibroimpact.studies.computation.compute_study import chunk_size, compute_study
+from vibroimpact.studies.computation.dask_workers import dask_workers
+from vibroimpact.studies.computation.ledger import Span
+from vibroimpact.studies.computation.run_chunks import run_chunks
+from vibroimpact.studies.computation.workers import processes, this_process
+from vibroimpact.studies.planning.swept_keys import case_at
 
 PEAKS = ("first_restitution_achieved", "largest_force_N", "total_energy_lost_J")
 

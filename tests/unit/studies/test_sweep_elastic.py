@@ -21,8 +21,8 @@ import xarray as xr
 import vibroimpact as vi
 from studies import study_table
 from vibroimpact.structures.store import PLACE, entries
-from vibroimpact.studies.compute_study import compute_study
-from vibroimpact.studies.swept_keys import case_at
+from vibroimpact.studies.computation.compute_study import compute_study
+from vibroimpact.studies.planning.swept_keys import case_at
 from waiting import wait_until
 
 PLATE = {

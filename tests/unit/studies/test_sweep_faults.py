@@ -26,14 +26,14 @@ import pytest
 
 import vibroimpact as vi
 from studies import RANDOM, study_file, study_table
-from vibroimpact.studies import compute_study as computing
-from vibroimpact.studies import write_dataset as study_dataset
-from vibroimpact.studies.chunk_file import ChunkResult
-from vibroimpact.studies.compute_points import compute_points
-from vibroimpact.studies.compute_study import compute_study
-from vibroimpact.studies.ledger import LEDGER, Span, make_ledger, open_ledger
-from vibroimpact.studies.run_chunks import run_chunks
-from vibroimpact.studies.workers import WorkerPool, processes, this_process
+from vibroimpact.studies.computation import compute_study as computing
+from vibroimpact.studies.computation import write_dataset as study_dataset
+from vibroimpact.studies.computation.chunk_file import ChunkResult
+from vibroimpact.studies.computation.compute_points import compute_points
+from vibroimpact.studies.computation.compute_study import compute_study
+from vibroimpact.studies.computation.ledger import LEDGER, Span, make_ledger, open_ledger
+from vibroimpact.studies.computation.run_chunks import run_chunks
+from vibroimpact.studies.computation.workers import WorkerPool, processes, this_process
 from waiting import wait_until
 
 DRAWN = vi.studies.sweep_of(study_table(RANDOM))
@@ -450,7 +450,7 @@ def test_the_journal_of_a_ledger_whose_process_was_killed_goes_with_the_next_ope
     script = f"""
         import os, signal
         from pathlib import Path
-        from vibroimpact.studies.ledger import Span, open_ledger
+        from vibroimpact.studies.computation.ledger import Span, open_ledger
         with open_ledger(Path({str(tmp_path)!r})) as ledger:
             ledger.done(Span(0, 0, 10), "", 0)
             os.kill(os.getpid(), signal.SIGKILL)
@@ -609,7 +609,7 @@ def test_an_interrupt_waits_while_a_process_is_started_and_is_not_lost(
 ) -> None:
     from multiprocessing.context import SpawnProcess
 
-    from vibroimpact.studies import workers
+    from vibroimpact.studies.computation import workers
 
     seen: list[str] = []
 

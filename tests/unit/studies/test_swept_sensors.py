@@ -12,10 +12,10 @@ from scipy import stats
 
 import vibroimpact as vi
 from studies import coal_on_steel
-from vibroimpact.cases.keys import with_values
+from vibroimpact.cases.sections.keys import with_values
 from vibroimpact.errors import InputError
-from vibroimpact.studies.axes import Listed, Normal
-from vibroimpact.studies.population import Population
+from vibroimpact.studies.planning.axes import Listed, Normal
+from vibroimpact.studies.planning.population import Population
 
 SENSORS = [
     {

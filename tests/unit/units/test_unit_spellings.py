@@ -15,7 +15,7 @@ from stated_numbers import ROOT
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.cases.build import problem_of
-from vibroimpact.cases.plate_motion import motion_of
+from vibroimpact.cases.rigid.plate_motion import motion_of
 from vibroimpact.cli import main
 from vibroimpact.identification.measured import sensors_of
 from vibroimpact.measurements.record_file import read_universal_record

@@ -21,12 +21,12 @@ _COLUMNS = 25_000
 _SMOOTH = 200
 
 
-def bounce_charts(found: Rebounds) -> list[Chart]:
+def bounce_charts(rebounds: Rebounds) -> list[Chart]:
     """Return the charts `record` and `restitution`.
 
     Parameters
     ----------
-    found : Rebounds
+    rebounds : Rebounds
         The impacts.
 
     Examples
@@ -46,17 +46,18 @@ def bounce_charts(found: Rebounds) -> list[Chart]:
     ['record', 'restitution']
     """
     of_impacts = partial(
-        restitution_chart, found, each="Each impact whose restitution is known", one="impact"
+        restitution_chart, rebounds, each="Each impact whose restitution is known", noun="impact"
     )
-    return made_charts({"record": partial(_record_chart, found), "restitution": of_impacts})
+    return made_charts({"record": partial(_record_chart, rebounds), "restitution": of_impacts})
 
 
-def _record_chart(found: Rebounds) -> Chart:
-    bounces, record = found.bounces, found.bounces.record
+def _record_chart(rebounds: Rebounds) -> Chart:
+    bounces = rebounds.bounces
+    record = rebounds.bounces.record
     names = tuple(f"impact {number + 1}" for number in range(len(bounces.time)))
     marks: list[Mark] = [
-        Line(*decimated(record.time, record.value, _COLUMNS), record.name, "under"),
-        Points(bounces.time, bounces.peak, "bounces of the ball", "matched", names),
+        Line(*decimated(record.time, record.value, _COLUMNS), record.name, "measured record"),
+        Points(bounces.time, bounces.peak, "bounces of the ball", "measured", names),
     ]
     if len(bounces.others):
         level = np.full(len(bounces.others), float(np.abs(bounces.peak).max()))
@@ -71,35 +72,36 @@ def _record_chart(found: Rebounds) -> Chart:
 
 
 def restitution_chart(
-    found: Fitted, each: str = "Each row of the table", one: str = "row"
+    fitted: Fitted, each: str = "Each row of the table", noun: str = "row"
 ) -> Chart:
     """Return the chart of restitutions over the approach speed with their fits; `each`
-    and `one`: what a point is.
+    and `noun`: what a point is.
     """
-    known = np.isfinite(found.restitution) & np.isfinite(found.approach_speed)
-    speed, (low, high) = found.approach_speed[known], found.intervals[known].T
-    names = tuple(f"{one} {number + 1}" for number in np.flatnonzero(known))
+    known = np.isfinite(fitted.restitution) & np.isfinite(fitted.approach_speed)
+    speed, (low, high) = fitted.approach_speed[known], fitted.intervals[known].T
+    names = tuple(f"{noun} {number + 1}" for number in np.flatnonzero(known))
     smooth = np.linspace(speed.min(), speed.max(), _SMOOTH)
     marks: list[Mark] = []
-    ends = found.laws[-1].band(smooth, found.confidence)
+    ends = fitted.laws[-1].band(smooth, fitted.confidence)
     if np.isfinite(ends).all():
         marks.append(
             Band(
                 smooth,
                 *ends,
-                f"{100.0 * found.confidence:g} % band of the {found.laws[-1].name} law",
+                f"{100.0 * fitted.confidence:g} % band of the {fitted.laws[-1].name} law",
                 "band",
             )
         )
     marks += [
-        Line(smooth, law(smooth), law.name, series(number)) for number, law in enumerate(found.laws)
+        Line(smooth, law(smooth), law.name, series(number))
+        for number, law in enumerate(fitted.laws)
     ]
     whole = np.isfinite([low, high]).all()
     bars = {"low": low, "high": high} if whole else {}
-    marks.append(Points(speed, found.restitution[known], f"{one}s", "matched", names, **bars))
+    marks.append(Points(speed, fitted.restitution[known], f"{noun}s", "measured", names, **bars))
     panel = Panel(Axis("Approach speed", "m/s"), Axis("Restitution"), tuple(marks))
-    interval = f", with its {100.0 * found.confidence:g} % interval" if whole else ""
-    caption = f"{each}{interval}, and the fit{'s' if len(found.laws) > 1 else ''}."
+    interval = f", with its {100.0 * fitted.confidence:g} % interval" if whole else ""
+    caption = f"{each}{interval}, and the fit{'s' if len(fitted.laws) > 1 else ''}."
     return Chart(
         "restitution", "Restitution over the approach speed", ((panel,),), caption, height=3.2
     )

@@ -8,8 +8,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.bounces.speed_laws import SpeedLaw, speed_laws
-from vibroimpact.calibration.fitting import half_width
-from vibroimpact.calibration.inputs import EARTH, Input, as_input, guessed_doubt
+from vibroimpact.calibration.fit.fitting import half_width
+from vibroimpact.calibration.observed.inputs import EARTH, Input, as_input, guessed_doubt
 from vibroimpact.errors import InputError
 from vibroimpact.report.reported import Reported
 from vibroimpact.signals.bounces.find import Bounces

@@ -13,7 +13,7 @@ from vibroimpact._version import __version__
 from vibroimpact.calibration.bounces.charts import bounce_charts
 from vibroimpact.calibration.bounces.rebounds import Rebounds
 from vibroimpact.calibration.bounces.speed_laws import CONSTANT, LINEAR, POWER, Fitted, SpeedLaw
-from vibroimpact.calibration.inputs import inputs_document, inputs_sentence
+from vibroimpact.calibration.observed.inputs import inputs_document, inputs_sentence
 from vibroimpact.report.report import Column, Note, Paragraph, Report, Section, Table
 from vibroimpact.results.csv_files import write_rows
 from vibroimpact.units.display import MISSING, digits, known_text, known_texts, multiple, text
@@ -99,7 +99,8 @@ def drop_sentence(rebounds: Rebounds) -> str:
 
 def contact_sentence(rebounds: Rebounds) -> str:
     """Return what a contact changes, whose duration is part of the time between touches."""
-    contact, flight = rebounds.bounces.contact, rebounds.bounces.flight
+    contact = rebounds.bounces.contact
+    flight = rebounds.bounces.flight
     if contact:
         return f"Flights are the times between touches less {text(contact, 's')} of contact."
     by_contact = (1.0 - rebounds.bounces.restitution) / flight[:-1]
@@ -115,7 +116,7 @@ def contact_sentence(rebounds: Rebounds) -> str:
 def other_sentences(rebounds: Rebounds) -> list[str]:
     """Return what else is heard."""
     pairs = list(zip(rebounds.bounces.others, rebounds.bounces.reasons, strict=True))
-    told = [
+    sentences = [
         f"Not a bounce, at {text(float(time), 's')}: {reason}."
         for time, reason in pairs[:_MOST_SOUNDS]
     ]
@@ -126,7 +127,9 @@ def other_sentences(rebounds: Rebounds) -> list[str]:
         else f"{more} other sounds are no bounces either"
     )
     return (
-        told if more <= 0 else [*told, rest if more == 1 else f"{rest}; summary.json lists them."]
+        sentences
+        if more <= 0
+        else [*sentences, rest if more == 1 else f"{rest}; summary.json lists them."]
     )
 
 

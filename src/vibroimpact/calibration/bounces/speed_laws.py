@@ -9,9 +9,11 @@ from typing import Protocol
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.fitting import half_width
+from vibroimpact.calibration.fit.fitting import half_width
 
-CONSTANT, LINEAR, POWER = "constant", "linear", "power"
+CONSTANT = "constant"
+LINEAR = "linear"
+POWER = "power"
 
 _MOST_BISECTIONS = 200
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats, Indices
-from vibroimpact.calibration.calibration import sections_of_case
-from vibroimpact.calibration.fitting import half_width, misfits
+from vibroimpact.calibration.contact_law.calibration import sections_of_case
+from vibroimpact.calibration.fit.fitting import half_width, misfits
 from vibroimpact.calibration.friction.doubts import friction_doubts, rebound_doubts
 from vibroimpact.calibration.friction.intervals import bootstrap_intervals, profile_intervals
 from vibroimpact.calibration.friction.least_squares import Bounds, Minimum, Residuals, minimize
@@ -20,9 +20,9 @@ from vibroimpact.calibration.friction.parameters import (
     friction_parameters,
     impact_model,
 )
-from vibroimpact.calibration.noise import standard_deviations
-from vibroimpact.calibration.observations import Observations, with_noise_scale
-from vibroimpact.calibration.section import FRICTION
+from vibroimpact.calibration.observed.noise import standard_deviations
+from vibroimpact.calibration.observed.observations import Observations, with_noise_scale
+from vibroimpact.calibration.observed.section import FRICTION
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.reader import case_of
 from vibroimpact.dynamics.problem import Problem, StatesProblem

@@ -13,8 +13,8 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.friction.calibrate import FrictionCalibration
 from vibroimpact.calibration.friction.parameters import ImpactModel
-from vibroimpact.calibration.matchable import ALONG_PLATE
-from vibroimpact.calibration.noise import standard_deviations
+from vibroimpact.calibration.observed.matchable import ALONG_PLATE
+from vibroimpact.calibration.observed.noise import standard_deviations
 from vibroimpact.cases.reader import case_of
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
@@ -39,12 +39,12 @@ class Curve(NamedTuple):
     role: str
 
 
-def friction_charts(found: FrictionCalibration) -> list[Chart]:
+def friction_charts(calibration: FrictionCalibration) -> list[Chart]:
     """Return the charts of calibrated friction.
 
     Parameters
     ----------
-    found : FrictionCalibration
+    calibration : FrictionCalibration
         Result of the calibration.
 
     Returns
@@ -55,42 +55,47 @@ def friction_charts(found: FrictionCalibration) -> list[Chart]:
     """
     return made_charts(
         {
-            "angle": lambda: _angle_chart(found, _curves(found)),
-            "slip_map": lambda: _slip_chart(found, _curves(found)),
+            "angle": lambda: _angle_chart(calibration, _curves(calibration)),
+            "slip_map": lambda: _slip_chart(calibration, _curves(calibration)),
         }
     )
 
 
-def _angle_chart(found: FrictionCalibration, curves: list[Curve]) -> Chart:
-    impacts, axis = found.impacts, Axis("Angle of incidence from the normal", "deg")
+def _angle_chart(calibration: FrictionCalibration, curves: list[Curve]) -> Chart:
+    impacts = calibration.impacts
+    axis = Axis("Angle of incidence from the normal", "deg")
     panels = []
     for name, (_, unit, phrase) in ALONG_PLATE.items():
         if name not in impacts.measured and name not in ("tangential_restitution", "rebound_angle"):
             continue
         marks: list[Mark] = [
-            Line(angle, outcomes[name], words, role) for angle, _, outcomes, words, role in curves
+            Line(angle, outcomes[name], sentence, role)
+            for angle, _, outcomes, sentence, role in curves
         ]
         if not curves:
             marks.append(
                 Points(
                     impacts.angle,
-                    found.outcomes[name],
+                    calibration.outcomes[name],
                     "computed",
                     "other mark",
                     impacts.seen.labels,
                 )
             )
         if name in impacts.measured:
-            values, low, high = impacts.measured[name], None, None
-            if name in found.weights and impacts.seen.deviations_known:
+            values = impacts.measured[name]
+            low = None
+            high = None
+            if name in calibration.weights and impacts.seen.deviations_known:
                 deviation = standard_deviations(impacts.seen.noise[name])
-                low, high = values - deviation, values + deviation
+                low = values - deviation
+                high = values + deviation
             marks.append(
                 Points(
                     impacts.angle,
                     values,
                     "measured",
-                    "matched",
+                    "measured",
                     impacts.seen.labels,
                     low=low,
                     high=high,
@@ -99,8 +104,8 @@ def _angle_chart(found: FrictionCalibration, curves: list[Curve]) -> Chart:
         panels.append(Panel(axis, Axis(f"{phrase[:1].upper()}{phrase[1:]}", unit), tuple(marks)))
     rows = tuple(tuple(panels[start : start + 2]) for start in range(0, len(panels), 2))
     caption = (
-        f"Single impacts under friction by {found.parameters.law.name}, measured, and computed "
-        "with the fitted parameters."
+        f"Single impacts under friction by {calibration.parameters.law.name}, measured, and "
+        "computed with the fitted parameters."
     )
     if any(
         mark.low is not None for panel in panels for mark in panel.marks if isinstance(mark, Points)
@@ -111,79 +116,80 @@ def _angle_chart(found: FrictionCalibration, curves: list[Curve]) -> Chart:
     )
 
 
-def _slip_chart(found: FrictionCalibration, curves: list[Curve]) -> Chart | None:
+def _slip_chart(calibration: FrictionCalibration, curves: list[Curve]) -> Chart | None:
     """Return the dimensionless map of the impacts; None where its scale is not known."""
-    law, source, model, impacts = (
-        found.parameters.with_values(found.values),
-        found.problem.source,
-        found.model,
-        found.impacts,
-    )
+    law = calibration.parameters.with_values(calibration.values)
+    source = calibration.problem.source
+    model = calibration.model
+    impacts = calibration.impacts
     ratio = moduli_ratio(law, None if source is None else case_of(source))
-    scale, radius = float(law.coefficient) * ratio, float(found.problem.sphere.contact_offset)
+    scale = float(law.coefficient) * ratio
+    radius = float(calibration.problem.sphere.contact_offset)
     if not scale > 0.0:
         return None
     # of the change of the centre's velocity is that of the contact point
-    whole = 1.0 + 1.0 / float(found.problem.inertia_ratio)
+    whole = 1.0 + 1.0 / float(calibration.problem.inertia_ratio)
 
     def psi(
-        one: ImpactModel, outcomes: Mapping[str, Floats], more: Floats | float = 0.0
+        impact_model: ImpactModel, outcomes: Mapping[str, Floats], more: Floats | float = 0.0
     ) -> tuple[Floats, Floats]:
         """Return dimensionless slips before and after impacts that leave so much more
         velocity along the plate than computed [m/s].
         """
-        before = one.velocity - radius * one.spin
+        before = impact_model.velocity - radius * impact_model.spin
         after = outcomes["separation_velocity_x"] - radius * outcomes["spin_y_after"] + whole * more
-        return before / (scale * one.speeds), after / (scale * one.speeds)
+        return before / (scale * impact_model.speeds), after / (scale * impact_model.speeds)
 
     marks: list[Mark] = [
-        Line(*psi(one, outcomes), words, role)
-        for _, one, outcomes, words, role in curves
+        Line(*psi(impact_model, outcomes), phrase, role)
+        for _, impact_model, outcomes, phrase, role in curves
         if role == "fit"
     ]
-    before, computed = psi(model, found.outcomes)
+    before, computed = psi(model, calibration.outcomes)
     if not marks:
         marks.append(Points(before, computed, "computed", "other mark", impacts.seen.labels))
-    more = _measured_velocity(found, radius) - found.outcomes["separation_velocity_x"]
+    more = _measured_velocity(calibration, radius) - calibration.outcomes["separation_velocity_x"]
     marks.append(
-        Points(*psi(model, found.outcomes, more), "measured", "matched", impacts.seen.labels)
+        Points(*psi(model, calibration.outcomes, more), "measured", "measured", impacts.seen.labels)
     )
-    restitution = found.outcomes["separation_speed"] / impacts.seen.speeds
+    restitution = calibration.outcomes["separation_speed"] / impacts.seen.speeds
     caption = "Single impacts, measured, and computed with the fitted parameters."
     return slip_map(
         marks,
         before,
         restitution,
         np.full(len(before), ratio),
-        found.problem.inertia_ratio,
+        calibration.problem.inertia_ratio,
         caption,
     )
 
 
-def _measured_velocity(found: FrictionCalibration, radius: float) -> Floats:
+def _measured_velocity(calibration: FrictionCalibration, radius: float) -> Floats:
     """Return the velocities along the plate after the impacts [m/s] by what was matched."""
-    impacts, matched = found.impacts, found.impacts.seen.wanted
+    impacts = calibration.impacts
+    matched = calibration.impacts.seen.wanted
     if "tangential_restitution" in matched:
         return np.asarray(matched["tangential_restitution"] * impacts.velocity)
     if "separation_velocity_x" in matched:
         return matched["separation_velocity_x"]
     if "rebound_angle" in matched:
         return np.asarray(
-            found.outcomes["separation_speed"] * np.tan(np.radians(matched["rebound_angle"]))
+            calibration.outcomes["separation_speed"] * np.tan(np.radians(matched["rebound_angle"]))
         )
-    turned = matched["spin_y_after"] - found.outcomes["spin_y_after"]
+    turned = matched["spin_y_after"] - calibration.outcomes["spin_y_after"]
     return np.asarray(
-        found.outcomes["separation_velocity_x"]
-        - float(found.problem.inertia_ratio) * radius * turned
+        calibration.outcomes["separation_velocity_x"]
+        - float(calibration.problem.inertia_ratio) * radius * turned
     )
 
 
-def _curves(found: FrictionCalibration) -> list[Curve]:
+def _curves(calibration: FrictionCalibration) -> list[Curve]:
     """Return the curves over the angle of incidence; none where speeds or spins of the
     impacts differ.
     """
-    impacts = found.impacts
-    along, across = impacts.seen.speeds, np.abs(impacts.velocity)
+    impacts = calibration.impacts
+    along = impacts.seen.speeds
+    across = np.abs(impacts.velocity)
     speeds = {"total": np.hypot(along, across), "normal": along}
     spreads = {name: float(np.ptp(speed) / speed.mean()) for name, speed in speeds.items()}
     steady = min(spreads, key=lambda name: spreads[name])
@@ -197,23 +203,24 @@ def _curves(found: FrictionCalibration) -> list[Curve]:
     angle = np.linspace(
         max(impacts.angle.min() - margin, 1e-3), min(impacts.angle.max() + margin, 89.0), _SMOOTH
     )
-    speed, turned = float(speeds[steady].mean()), np.radians(angle)
+    speed = float(speeds[steady].mean())
+    turned = np.radians(angle)
     normal = speed * np.cos(turned) if steady == "total" else np.full(_SMOOTH, speed)
     order = np.argsort(impacts.angle)
     nearest = order[np.clip(np.searchsorted(impacts.angle[order], angle), 0, len(order) - 1)]
     model = replace(
-        found.model,
-        law=found.model.law.take(nearest),
+        calibration.model,
+        law=calibration.model.law.take(nearest),
         speeds=normal,
         velocity=normal * np.tan(turned),
         spin=np.full(_SMOOTH, impacts.spin.mean()),
     )
-    curves = [(found.values, "computed", "fit")]
-    if found.as_given and not np.allclose(found.given, found.values, rtol=1e-3):
-        curves.insert(0, (found.given, "as the case gives it", "muted"))
+    curves = [(calibration.values, "computed", "fit")]
+    if calibration.as_given and not np.allclose(calibration.given, calibration.values, rtol=1e-3):
+        curves.insert(0, (calibration.given, "as the case gives it", "muted"))
     return [
         Curve(
-            angle, model, {name: row[0] for name, row in model(values[None]).items()}, words, role
+            angle, model, {name: row[0] for name, row in model(values[None]).items()}, phrase, role
         )
-        for values, words, role in curves
+        for values, phrase, role in curves
     ]

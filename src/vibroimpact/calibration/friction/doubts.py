@@ -12,8 +12,8 @@ import numpy as np
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.calibration.friction.measured import ObliqueImpacts
 from vibroimpact.calibration.friction.parameters import FrictionParameters
-from vibroimpact.calibration.observations import Observations
-from vibroimpact.calibration.section import FRICTION
+from vibroimpact.calibration.observed.observations import Observations
+from vibroimpact.calibration.observed.section import FRICTION
 from vibroimpact.units.display import digits, text
 
 _WIDE = 1.0

@@ -9,10 +9,10 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.calibration import case_name
+from vibroimpact.calibration.contact_law.calibration import case_name
 from vibroimpact.calibration.friction.calibrate import FrictionCalibration
-from vibroimpact.calibration.matchable import ALONG_PLATE
-from vibroimpact.calibration.noise import standard_deviations
+from vibroimpact.calibration.observed.matchable import ALONG_PLATE
+from vibroimpact.calibration.observed.noise import standard_deviations
 from vibroimpact.report.report import Table, first_rows, table_of
 from vibroimpact.runs.tables import formatted_column
 from vibroimpact.units.display import column_texts, digits, fixed, text
@@ -23,62 +23,65 @@ which it is none.
 """
 
 
-def friction_words(found: FrictionCalibration) -> str:
+def friction_words(calibration: FrictionCalibration) -> str:
     """Return the values found as text."""
-    each = zip(found.names, found.values, found.parameters.units, strict=True)
+    each = zip(calibration.names, calibration.values, calibration.parameters.units, strict=True)
     return ", ".join(f"{name} = {text(float(value), unit)}" for name, value, unit in each)
 
 
-def together_words(found: FrictionCalibration) -> str:
+def together_words(calibration: FrictionCalibration) -> str:
     """Return in words what was matched."""
-    every = " and the ".join(ALONG_PLATE[name].phrase for name in found.weights)
+    every = " and the ".join(ALONG_PLATE[name].phrase for name in calibration.weights)
     return (
-        f"the {every} of all impacts {'is' if len(found.weights) == 1 else 'are'} fitted "
+        f"the {every} of all impacts {'is' if len(calibration.weights) == 1 else 'are'} fitted "
         "jointly to the measurement"
     )
 
 
-def friction_sentences(found: FrictionCalibration) -> list[str]:
+def friction_sentences(calibration: FrictionCalibration) -> list[str]:
     """Return sentences on the intervals of the values, and on the residuals."""
-    percent, told = f"{100.0 * found.confidence:g} %", []
-    if found.intervals is not None:
+    percent = f"{100.0 * calibration.confidence:g} %"
+    sentences = []
+    if calibration.intervals is not None:
         each = [
             f"{name} {_interval_words(interval, ends, unit)}"
             for name, interval, ends, unit in zip(
-                found.names,
-                found.intervals,
-                found.parameters.allowed,
-                found.parameters.units,
+                calibration.names,
+                calibration.intervals,
+                calibration.parameters.allowed,
+                calibration.parameters.units,
                 strict=True,
             )
         ]
         way = (
-            f"by bootstrap with {found.bootstrap} draws"
-            if found.bootstrap
+            f"by bootstrap with {calibration.bootstrap} draws"
+            if calibration.bootstrap
             else "by the profile of the sum of squares"
         )
         source = "the scatter of the measurement"
-        if found.impacts.seen.deviations_known:
-            more = " and the scatter beyond them" if math.isfinite(found.freedom) else ""
+        if calibration.impacts.seen.deviations_known:
+            more = " and the scatter beyond them" if math.isfinite(calibration.freedom) else ""
             source = f"the given standard deviations{more}"
-        told.append(f"At {percent}: {', '.join(each)}. Intervals are {way}, from {source}.")
+        sentences.append(f"At {percent}: {', '.join(each)}. Intervals are {way}, from {source}.")
     for name, (_, unit, phrase) in ALONG_PLATE.items():
-        if name in found.weights:
-            off = found.outcomes[name] - found.impacts.measured[name]
+        if name in calibration.weights:
+            off = calibration.outcomes[name] - calibration.impacts.measured[name]
             off = np.where(
-                np.abs(off) > _ROUNDING * np.abs(found.impacts.measured[name]).max(),
+                np.abs(off) > _ROUNDING * np.abs(calibration.impacts.measured[name]).max(),
                 np.abs(off),
                 0.0,
             )
             mean, most = (text(float(value), unit, 3) for value in (off.mean(), off.max()))
-            told.append(
+            sentences.append(
                 f"Computed and measured {phrase} differ by {mean} in the mean and {most} at most."
             )
-    if found.impacts.seen.deviations_known and math.isfinite(found.scatter):
-        told.append(
-            f"Residuals are {digits(found.scatter, 3)} times as large as their standard deviations."
+    if calibration.impacts.seen.deviations_known and math.isfinite(calibration.scatter):
+        sentences.append(
+            f"Residuals are {digits(calibration.scatter, 3)} times as large as their standard "
+            "deviations."
         )
-    slip, number = int(found.slips.sum()), len(found.slips)
+    slip = int(calibration.slips.sum())
+    number = len(calibration.slips)
     alone = (
         f"; of friction, {'these depend' if slip > 1 else 'it depends'} on the coefficient alone"
         if slip
@@ -87,36 +90,38 @@ def friction_sentences(found: FrictionCalibration) -> list[str]:
     which = f"Of {number} impacts {slip or 'none'} slip{'s' if slip == 1 else ''}"
     if number == 1:
         which = "The impact slips" if slip else "The impact does not slip"
-    told.append(f"{which} throughout{alone}.")
-    if found.impacts.separation_speed is not None:
-        told.append(
+    sentences.append(f"{which} throughout{alone}.")
+    if calibration.impacts.separation_speed is not None:
+        sentences.append(
             "The normal rebound was measured too: the contact law is matched to it at each impact."
         )
-    return told
+    return sentences
 
 
-def given_values_sentences(found: FrictionCalibration) -> list[str]:
+def given_values_sentences(calibration: FrictionCalibration) -> list[str]:
     """Return sentences on the values that the case gives."""
-    told = []
-    for place, (name, unit) in enumerate(zip(found.names, found.parameters.units, strict=True)):
-        value = float(found.given[place])
-        if not math.isfinite(value) or math.isclose(value, found.values[place], rel_tol=1e-3):
+    sentences = []
+    for place, (name, unit) in enumerate(
+        zip(calibration.names, calibration.parameters.units, strict=True)
+    ):
+        value = float(calibration.given[place])
+        if not math.isfinite(value) or math.isclose(value, calibration.values[place], rel_tol=1e-3):
             continue
         inside = (
-            found.intervals is not None
-            and found.intervals[place, 0] <= value <= found.intervals[place, 1]
+            calibration.intervals is not None
+            and calibration.intervals[place, 0] <= value <= calibration.intervals[place, 1]
         )
         verdict = "inside the interval" if inside else "outside the interval"
-        told.append(
+        sentences.append(
             f"The case gives {name} = "
-            f"{text(value, unit)}{f', {verdict}' if found.intervals is not None else ''}."
+            f"{text(value, unit)}{f', {verdict}' if calibration.intervals is not None else ''}."
         )
-    return told
+    return sentences
 
 
-def friction_table(found: FrictionCalibration) -> Table:
+def friction_table(calibration: FrictionCalibration) -> Table:
     """Return the table of the impacts."""
-    impacts = found.impacts
+    impacts = calibration.impacts
     headers = [("", ""), ("Angle", "deg"), ("Speed", "m/s")]
     columns = [
         list(impacts.seen.labels),
@@ -126,45 +131,53 @@ def friction_table(found: FrictionCalibration) -> Table:
     for name, (column, _, phrase) in ALONG_PLATE.items():
         if name not in impacts.measured:
             continue
-        measured, number = impacts.measured[name], len(impacts.velocity)
-        unit, cells = formatted_column(column, np.concatenate([measured, found.outcomes[name]]))
+        measured = impacts.measured[name]
+        number = len(impacts.velocity)
+        unit, cells = formatted_column(
+            column, np.concatenate([measured, calibration.outcomes[name]])
+        )
         headers += [(phrase.capitalize(), unit), ("computed", unit)]
         columns += [cells[:number], cells[number:]]
-        if name in found.weights and impacts.seen.deviations_known:
+        if name in calibration.weights and impacts.seen.deviations_known:
             headers.append(("off by standard deviations", ""))
             columns.append(
                 [
                     fixed(float(part), 2)
-                    for part in (found.outcomes[name] - measured) / _deviations(found, name)
+                    for part in (calibration.outcomes[name] - measured)
+                    / _deviations(calibration, name)
                 ]
             )
-        if found.as_given:
+        if calibration.as_given:
             headers.append(("as the case gives it", unit))
             columns.append(
-                formatted_column(column, np.concatenate([measured, found.as_given[name]]))[1][
+                formatted_column(column, np.concatenate([measured, calibration.as_given[name]]))[1][
                     number:
                 ]
             )
     headers.append(("Slips throughout", ""))
-    columns.append(["yes" if slips else "no" for slips in found.slips])
+    columns.append(["yes" if slips else "no" for slips in calibration.slips])
     rows = [list(row) for row in zip(*columns, strict=True)]
     return table_of(headers, first_rows(rows))
 
 
-def friction_document(found: FrictionCalibration) -> dict[str, Any]:
+def friction_document(calibration: FrictionCalibration) -> dict[str, Any]:
     """Return the contents of `calibration.json`; None where there is no finite value.
 
     Parameters
     ----------
-    found : FrictionCalibration
+    calibration : FrictionCalibration
         The calibration.
     """
-    ends = np.full((len(found.values), 2), np.nan) if found.intervals is None else found.intervals
+    ends = (
+        np.full((len(calibration.values), 2), np.nan)
+        if calibration.intervals is None
+        else calibration.intervals
+    )
     return {
         "version": __version__,
-        "name": case_name(found.problem),
-        "law": found.parameters.law.name,
-        "match": dict(found.weights),
+        "name": case_name(calibration.problem),
+        "law": calibration.parameters.law.name,
+        "match": dict(calibration.weights),
         "parameters": [
             {
                 "parameter": name,
@@ -175,24 +188,29 @@ def friction_document(found: FrictionCalibration) -> dict[str, Any]:
                 "given": _finite(given),
             }
             for name, unit, value, (low, high), given in zip(
-                found.names, found.parameters.units, found.values, ends, found.given, strict=True
+                calibration.names,
+                calibration.parameters.units,
+                calibration.values,
+                ends,
+                calibration.given,
+                strict=True,
             )
         ],
-        "degrees_of_freedom": _finite(found.freedom),
-        "scatter": _finite(found.scatter),
-        "confidence": found.confidence,
-        "bootstrap": found.bootstrap,
-        "matched": friction_rows(found),
-        "doubts": list(found.doubts),
-        "case": found.problem.source or None,
+        "degrees_of_freedom": _finite(calibration.freedom),
+        "scatter": _finite(calibration.scatter),
+        "confidence": calibration.confidence,
+        "bootstrap": calibration.bootstrap,
+        "matched": friction_rows(calibration),
+        "doubts": list(calibration.doubts),
+        "case": calibration.problem.source or None,
     }
 
 
-def friction_rows(found: FrictionCalibration) -> list[dict[str, Any]]:
+def friction_rows(calibration: FrictionCalibration) -> list[dict[str, Any]]:
     """Return the impacts, one mapping each: how they came, what was measured, and what is
     computed.
     """
-    impacts = found.impacts
+    impacts = calibration.impacts
     columns: dict[str, list[Any]] = {
         "label": list(impacts.seen.labels),
         "angle_deg": impacts.angle.tolist(),
@@ -203,17 +221,17 @@ def friction_rows(found: FrictionCalibration) -> list[dict[str, Any]]:
     for name, (column, *_) in ALONG_PLATE.items():
         if name in impacts.measured:
             columns[f"measured_{column}"] = _finite_values(impacts.measured[name])
-        if name in found.weights and impacts.seen.deviations_known:
-            columns[f"standard_deviation_{column}"] = _deviations(found, name).tolist()
-        columns[column] = _finite_values(found.outcomes[name])
-        if found.as_given:
-            columns[f"as_given_{column}"] = _finite_values(found.as_given[name])
-    columns["slips_throughout"] = found.slips.tolist()
+        if name in calibration.weights and impacts.seen.deviations_known:
+            columns[f"standard_deviation_{column}"] = _deviations(calibration, name).tolist()
+        columns[column] = _finite_values(calibration.outcomes[name])
+        if calibration.as_given:
+            columns[f"as_given_{column}"] = _finite_values(calibration.as_given[name])
+    columns["slips_throughout"] = calibration.slips.tolist()
     return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
-def _deviations(found: FrictionCalibration, name: str) -> Floats:
-    return standard_deviations(found.impacts.seen.noise[name])
+def _deviations(calibration: FrictionCalibration, name: str) -> Floats:
+    return standard_deviations(calibration.impacts.seen.noise[name])
 
 
 def _interval_words(interval: Floats, ends: Floats, unit: str) -> str:

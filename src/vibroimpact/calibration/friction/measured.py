@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.impact_table import DEVIATION, check_positive
-from vibroimpact.calibration.matchable import ALONG_PLATE, DIRECTIONS
-from vibroimpact.calibration.measured_case import check_restitutions
-from vibroimpact.calibration.measured_file import in_file, known_deviations
-from vibroimpact.calibration.observations import Observations, from_table
-from vibroimpact.calibration.section import FileTarget
+from vibroimpact.calibration.observed.matchable import ALONG_PLATE, DIRECTIONS
+from vibroimpact.calibration.observed.observations import Observations, from_table
+from vibroimpact.calibration.observed.section import FileTarget
+from vibroimpact.calibration.records.impact_table import DEVIATION, check_positive
+from vibroimpact.calibration.records.measured_case import check_restitutions
+from vibroimpact.calibration.records.measured_file import in_file, known_deviations
 from vibroimpact.cases.case import Case
 from vibroimpact.errors import InputError
 from vibroimpact.measurements.record_file import is_universal

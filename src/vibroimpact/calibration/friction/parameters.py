@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
+from vibroimpact.calibration.fit.matching import match
+from vibroimpact.calibration.fit.single_impacts import AT_ONCE, oblique_impacts
+from vibroimpact.calibration.fit.tunables import law_parameter
+from vibroimpact.calibration.fit.uncertainty import with_nearest_bound
 from vibroimpact.calibration.friction.least_squares import Bounds
 from vibroimpact.calibration.friction.measured import ObliqueImpacts
-from vibroimpact.calibration.matching import match
-from vibroimpact.calibration.observations import from_table
-from vibroimpact.calibration.section import FRICTION
-from vibroimpact.calibration.single_impacts import AT_ONCE, oblique_impacts
-from vibroimpact.calibration.tunables import law_parameter
-from vibroimpact.calibration.uncertainty import with_nearest_bound
+from vibroimpact.calibration.observed.observations import from_table
+from vibroimpact.calibration.observed.section import FRICTION
 from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
 from vibroimpact.dynamics.oblique.statement import Oblique

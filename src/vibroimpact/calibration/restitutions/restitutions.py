@@ -9,8 +9,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.bounces.speed_laws import LINEAR, SpeedLaw, speed_laws
-from vibroimpact.calibration.fitting import half_width
-from vibroimpact.calibration.impact_table import (
+from vibroimpact.calibration.fit.fitting import half_width
+from vibroimpact.calibration.records.impact_table import (
     DEVIATION,
     check_counts,
     check_positive,

@@ -23,8 +23,13 @@ from vibroimpact.bodies.rigid_bodies import rigid_sphere
 from vibroimpact.cases.elastic.modes import BodyModes, compute_modes, contact_place
 from vibroimpact.cases.elastic.residuals import residual_keys, with_residuals
 from vibroimpact.cases.fields.local import MeasuredImpact
-from vibroimpact.cases.pair import contact_pair, is_free_sphere
-from vibroimpact.cases.rigid_problem import PLATE_FALLS, contact_laws_of, elastic_names, touch_speed
+from vibroimpact.cases.rigid.pair import contact_pair, is_free_sphere
+from vibroimpact.cases.rigid.rigid_problem import (
+    PLATE_FALLS,
+    contact_laws_of,
+    elastic_names,
+    touch_speed,
+)
 from vibroimpact.cases.validity.plate_mesh import PLATE_MESH_COMPLIANCE
 from vibroimpact.cases.validity.plate_waves import PLATE_THEORY_INERTIA
 from vibroimpact.compiled import interpreted
@@ -37,6 +42,7 @@ from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
+from vibroimpact.structures.finite_elements.surface import place_of
 from vibroimpact.structures.mesh_compliance import mesh_compliance, mesh_compliance_key
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
 from vibroimpact.structures.plate_face import face_shapes
@@ -49,10 +55,9 @@ from vibroimpact.structures.static_compliance import (
     stored_compliance,
 )
 from vibroimpact.structures.store import carry
-from vibroimpact.structures.surface import place_of
 
 if TYPE_CHECKING:
-    from vibroimpact.cases.schema import CaseTable
+    from vibroimpact.cases.sections.schema import CaseTable
 
 # least part of the contact's own compliance that must remain after the modal compliance is
 # subtracted

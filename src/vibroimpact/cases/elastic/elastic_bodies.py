@@ -15,18 +15,18 @@ from vibroimpact.cases.fields.elastic_body import (
 )
 from vibroimpact.cases.fields.section import derived
 from vibroimpact.cases.fields.supports import supports_of, supports_table
-from vibroimpact.cases.rigid_problem import elastic_names
+from vibroimpact.cases.rigid.rigid_problem import elastic_names
 from vibroimpact.dynamics.sensors.antialias import FINENESS
 from vibroimpact.dynamics.sensors.instruments.microphone import MicrophoneInCase
 from vibroimpact.errors import InputError
+from vibroimpact.structures.finite_elements.rectangle import rectangle_blocks
+from vibroimpact.structures.finite_elements.surface import Spot
 from vibroimpact.structures.recipe import ImportedMesh, Recipe, mesh_features
-from vibroimpact.structures.rectangle import rectangle_blocks
 from vibroimpact.structures.sound_paths import Listener
 from vibroimpact.structures.supports.support import Support
-from vibroimpact.structures.surface import Spot
 
 if TYPE_CHECKING:
-    from vibroimpact.cases.schema import CaseTable
+    from vibroimpact.cases.sections.schema import CaseTable
 
 # default: no splitting, so that the number of elements is that of the case
 _UNSPLIT = {"splits": 0, "lower_splits": 0}

@@ -13,17 +13,17 @@ from scipy.sparse import csr_array
 from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.cases.fields.item_labels import item_label
 from vibroimpact.errors import InputError
-from vibroimpact.structures.geometry import check_mesh, mass_properties
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.geometry import check_mesh, mass_properties
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.structure import Structure
+from vibroimpact.structures.finite_elements.surface import Side, Spot, place_of, surface_motion
 from vibroimpact.structures.recipe import ImportedMesh
-from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.support_force import support_at
 from vibroimpact.structures.supports.constraints import Constraints
-from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
 
 if TYPE_CHECKING:
     from vibroimpact.bodies.elastic import ElasticBody
-    from vibroimpact.cases.schema import CaseTable
+    from vibroimpact.cases.sections.schema import CaseTable
 
 
 def meshes_of(case: CaseTable) -> dict[str, Mesh]:

@@ -13,11 +13,12 @@ from vibroimpact.bodies.ball import ball_volume
 from vibroimpact.bodies.elastic import ElasticBody
 from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.cases.elastic.meshes import meshes_of
-from vibroimpact.cases.limit import two_digits
+from vibroimpact.cases.limits.limit import two_digits
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.report.reported import Reported
 from vibroimpact.structures.damping import ConstantRatio, RatioOfEach, RatioTable
+from vibroimpact.structures.finite_elements.surface import Side, materials_at, place_of
 from vibroimpact.structures.frequency_error import MESH, REDUCTION, SUPPORTS, THEORY
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
 from vibroimpact.structures.recipe import (
@@ -30,10 +31,9 @@ from vibroimpact.structures.recipe import (
     is_thin,
     modal_model_of,
 )
-from vibroimpact.structures.surface import Side, materials_at, place_of
 
 if TYPE_CHECKING:
-    from vibroimpact.cases.schema import CaseTable
+    from vibroimpact.cases.sections.schema import CaseTable
 
 _FREQUENCY_OFF = 0.005  # relative: a larger estimated frequency error is doubted
 # relative: a larger difference in mass between an imported mesh and the case is doubted
@@ -191,7 +191,7 @@ def compute_modes(
         raise InputError(
             'no body of the case is elastic; give the sphere or the plate model = "elastic"'
         )
-    found = {}
+    modes_of_bodies = {}
     for number, (name, body) in enumerate(bodies.items()):
 
         def report_part(part: float, number: int = number) -> None:
@@ -201,7 +201,7 @@ def compute_modes(
         try:
             model = modal_model_of(body.recipe, report_part, tell)
             basis = body.basis(model)
-            found[name] = BodyModes(
+            modes_of_bodies[name] = BodyModes(
                 body, model, basis, tuple(_doubts(case, name, body, model, basis))
             )
         except InputError as error:
@@ -209,7 +209,7 @@ def compute_modes(
             raise InputError(
                 error.message, ".".join(part for part in (name, error.key) if part)
             ) from None
-    return Modes(case, found)
+    return Modes(case, modes_of_bodies)
 
 
 def contact_place(body: BodyModes) -> tuple[tuple[float, float], Side]:
@@ -254,7 +254,8 @@ def _doubts_of_frequencies(
     off = int((errors > _FREQUENCY_OFF).sum())
     if not off:
         return
-    worst, cause = int(errors.argmax()), model.facts.get(MAIN_CAUSE, MESH)
+    worst = int(errors.argmax())
+    cause = model.facts.get(MAIN_CAUSE, MESH)
     remedy = _remedy(case, name, body.recipe, cause)
     which = f"{off} of the {len(errors)} modes" if len(errors) > 1 else "the mode"
     yield (
@@ -300,7 +301,7 @@ def _doubts_of_materials(
     touched = materials_at(
         model.mesh, material, place_of(model.mesh, body.contact, body.side), body.side
     )
-    other = next((one for one in touched if not _alike(one, material)), None)
+    other = next((candidate for candidate in touched if not _alike(candidate, material)), None)
     if other is not None:
         yield (
             f"the elements of the {name} at the contact point are of {other.density:.4g} "
@@ -316,12 +317,12 @@ def _doubts_of_materials(
         )
 
 
-def _alike(one: Material, other: Material) -> bool:
+def _alike(first: Material, other: Material) -> bool:
     """Return whether two materials are the same in contact, up to the spread of values in
     tables.
     """
     return all(
-        abs(getattr(one, key) / getattr(other, key) - 1.0) < _MATERIAL_OFF
+        abs(getattr(first, key) / getattr(other, key) - 1.0) < _MATERIAL_OFF
         for key in ("density", "youngs_modulus")
     )
 
@@ -332,7 +333,8 @@ def _doubts_of_mass(
     """Yield a doubt if the mass of a mesh differs from that of the case, or its size
     suggests millimetres.
     """
-    brought, extent = isinstance(body.recipe.shape, ImportedMesh), model.mesh.extent
+    brought = isinstance(body.recipe.shape, ImportedMesh)
+    extent = model.mesh.extent
     size = " x ".join(f"{side:.3g}" for side in (*extent[:2], model.thickness or extent[2]))
     said = f"the mesh of the {name} is {size} m large and weighs {model.properties.mass:.4g} kg"
     remedy = (

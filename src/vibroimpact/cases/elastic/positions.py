@@ -9,10 +9,10 @@ from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
 from vibroimpact.cases.fields.item_labels import item_label
 from vibroimpact.cases.wrong_units.lengths import likely_lengths
 from vibroimpact.errors import InputError
-from vibroimpact.structures.rectangle import CLOSEST
+from vibroimpact.structures.finite_elements.rectangle import CLOSEST
 
 if TYPE_CHECKING:
-    from vibroimpact.cases.schema import CaseTable
+    from vibroimpact.cases.sections.schema import CaseTable
 
 _ROUNDING = 1.0 + 1e-9  # relative tolerance
 _RIGID = ("patch", "patches", "bar", "bars")  # the mesh follows their rims

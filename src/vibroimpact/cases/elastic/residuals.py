@@ -8,10 +8,10 @@ from dataclasses import replace
 from vibroimpact.arrays import Floats
 from vibroimpact.bodies.elastic import ElasticBody
 from vibroimpact.cases.elastic.modes import BodyModes, contact_place
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.surface import Side, Spot, place_of
 from vibroimpact.structures.modal_model import ModalBasis
 from vibroimpact.structures.support_force import support_force_key
-from vibroimpact.structures.surface import Side, Spot, place_of
 from vibroimpact.structures.transfer_compliance import (
     Point,
     hold_transfers,

@@ -10,12 +10,12 @@ from vibroimpact.cases.elastic.coupling import treatment_of
 from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.cases.elastic.residuals import hold_residuals
 from vibroimpact.errors import ComputationError, InputError
+from vibroimpact.structures.finite_elements.surface import place_of
 from vibroimpact.structures.recipe import modal_model_of, plate_key
 from vibroimpact.structures.static_compliance import hold_compliances
-from vibroimpact.structures.surface import place_of
 
 if TYPE_CHECKING:
-    from vibroimpact.cases.schema import CaseTable
+    from vibroimpact.cases.sections.schema import CaseTable
 
 
 def solve_together(cases: Iterable[CaseTable]) -> None:

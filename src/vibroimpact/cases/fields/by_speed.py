@@ -13,8 +13,10 @@ from vibroimpact.errors import InputError, choices
 from vibroimpact.quoting import quoted
 from vibroimpact.ranges import Range
 
-_TABLE, _POLYNOMIAL = ("speed", "value"), ("polynomial", "from", "to")
-_MOST_SPEEDS, _MOST_COEFFICIENTS = 1000, 10
+_TABLE = ("speed", "value")
+_POLYNOMIAL = ("polynomial", "from", "to")
+_MOST_SPEEDS = 1000
+_MOST_COEFFICIENTS = 10
 _FORMS = "{ speed = [...], value = [...] } or { polynomial = [...], from = ..., to = ... }"
 
 
@@ -70,12 +72,12 @@ def _polynomial(given: Mapping[str, Any], unit: str, allowed: Range) -> SpeedFun
     ends = [read_quantity(given[name], "m/s", Range(at_least=0)) for name in ("from", "to")]
     if not ends[0] < ends[1]:
         raise InputError(f"it is from {ends[0]:g} to {ends[1]:g} m/s; to must be greater than from")
-    found = SpeedFunction(coefficients, *ends)
-    for value in found.extremes:
+    function = SpeedFunction(coefficients, *ends)
+    for value in function.extremes:
         allowed.check(
             value, unit, f"between {ends[0]:g} and {ends[1]:g} m/s it comes to {value:.4g}, which"
         )
-    return found
+    return function
 
 
 def _numbers(given: Any, name: str, unit: str, allowed: Range, most: int) -> tuple[float, ...]:
@@ -87,7 +89,8 @@ def _numbers(given: Any, name: str, unit: str, allowed: Range, most: int) -> tup
 
 def by_speed_schema(unit: str, meaning: str) -> list[dict[str, Any]]:
     """Return the JSON schemas of a function of the approach speed: a table, and a polynomial."""
-    value, speed = quantity_schema(unit, meaning), quantity_schema("m/s", "approach speed")
+    value = quantity_schema(unit, meaning)
+    speed = quantity_schema("m/s", "approach speed")
     lists = {
         "speed": {"type": "array", "items": speed, "minItems": 1},
         "value": {"type": "array", "items": value, "minItems": 1},
@@ -106,12 +109,12 @@ def by_speed_schema(unit: str, meaning: str) -> list[dict[str, Any]]:
     return [
         {
             "type": "object",
-            "description": words,
-            "properties": one,
-            "required": list(one),
+            "description": phrase,
+            "properties": properties,
+            "required": list(properties),
             "additionalProperties": False,
         }
-        for words, one in (
+        for phrase, properties in (
             ("linear between approach speeds", lists),
             ("a polynomial of the approach speed", polynomial),
         )

@@ -111,8 +111,8 @@ def damping_of(value: Any, loss_factor: float | None) -> Damping:
                 "damping",
             )
         return LossFactor(loss_factor)
-    found: Damping = value
-    return found
+    damping: Damping = value
+    return damping
 
 
 def damping_table(value: Any) -> Any:

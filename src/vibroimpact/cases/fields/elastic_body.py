@@ -31,9 +31,9 @@ from vibroimpact.ranges import Range
 
 # not imported at run time, as a case with rigid bodies does not need scipy.sparse
 if TYPE_CHECKING:
-    from vibroimpact.structures.mesh import Mesh
+    from vibroimpact.structures.finite_elements.mesh import Mesh
+    from vibroimpact.structures.finite_elements.surface import Side, Spot
     from vibroimpact.structures.recipe import ImportedMesh, Place, Reduction
-    from vibroimpact.structures.surface import Side, Spot
 
 MOST_MODES = 20_000
 _PARTS = "parts"  # kind of the entries of the store with the number of parts of a file
@@ -120,19 +120,19 @@ class BroughtMeshTable(Section):
         It is that of the store if it is there.
         """
         from vibroimpact.meshes.mesh_file import mesh_of_file
-        from vibroimpact.structures.parts import number_of_parts
+        from vibroimpact.structures.finite_elements.parts import number_of_parts
         from vibroimpact.structures.store import hold_entry, key_of, load_entry, save_entry
 
         key = key_of(["parts of a mesh", digest])
-        found, _ = load_entry(key, _PARTS, lambda entry: int(entry[_PARTS].item()))
-        if found is None:
-            found = number_of_parts(
+        part_count, _ = load_entry(key, _PARTS, lambda entry: int(entry[_PARTS].item()))
+        if part_count is None:
+            part_count = number_of_parts(
                 self._with_keys(lambda: mesh_of_file(self.file, self.unit, self.element_size))
             )
-            entry = {_PARTS: np.array(found)}
+            entry = {_PARTS: np.array(part_count)}
             hold_entry(key, _PARTS, entry)
             save_entry(key, _PARTS, entry)
-        return found
+        return part_count
 
     def table(self) -> dict[str, Any]:
         """Return the table as it is written in a resolved case file."""

@@ -41,7 +41,8 @@ class InvalidTable(ValueError):
 
     def __init__(self, section: type[BaseModel], error: ValidationError) -> None:
         super().__init__(str(error))
-        self.section, self.error = section, error
+        self.section = section
+        self.error = error
 
 
 def fault_messages(
@@ -72,7 +73,8 @@ class _Fault:
         self.kind: str = fault["type"]
         self.value: Any = fault["input"]
         self.context: dict[str, Any] = fault.get("ctx", {})
-        self.section, self.of_case = section, of_case
+        self.section = section
+        self.of_case = of_case
 
     @property
     def branch(self) -> int:
@@ -114,7 +116,8 @@ class _Fault:
 
     def messages(self) -> Iterator[tuple[str, str]]:
         """Yield the key path and the message; several of a table in the table."""
-        path, cause = ".".join(self.path), self.context.get("error")
+        path = ".".join(self.path)
+        cause = self.context.get("error")
         if isinstance(cause, InvalidTable):
             yield from (
                 (f"{path}.{key}" if path else key, text)
@@ -169,7 +172,8 @@ class _Fault:
         return f"{given} is not allowed; it must be {self.wanted}{'.' if hint else ''}{hint}"
 
     def _unknown_key(self) -> str:
-        above, key = self.path[:-1], self.path[-1]
+        above = self.path[:-1]
+        key = self.path[-1]
         section = section_at(self.section, above)
         known = keys_of(section) if section is not None else []
         name = ".".join(part for part in above if not part.isdigit())
@@ -194,9 +198,9 @@ def _by_value(faults: Sequence[_Fault]) -> Iterator[_Fault]:
         done.add(place)
         yield from _meant(
             [
-                one
-                for one in faults
-                if one.branch == fault.branch and one.loc[: fault.branch] == place
+                sibling
+                for sibling in faults
+                if sibling.branch == fault.branch and sibling.loc[: fault.branch] == place
             ]
         )
 
@@ -214,7 +218,8 @@ def _meant(faults: Sequence[_Fault]) -> Sequence[_Fault]:
     first = faults[0]
     if len(faults) > 1:
         wanted = first.about or ", or ".join(dict.fromkeys(fault.wanted for fault in faults))
-        first.kind, first.context = "no_alternative", {"expected": wanted}
+        first.kind = "no_alternative"
+        first.context = {"expected": wanted}
     return [first]
 
 

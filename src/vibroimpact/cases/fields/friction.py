@@ -80,11 +80,11 @@ def check_friction_law(value: Any) -> None:
             "friction.law",
         )
     if value["law"] not in names:
-        words = (
+        message = (
             f"there is no friction law {quoted(value['law'])}; there are "
             f"{known_laws}.{did_you_mean(value['law'], names)}"
         )
-        raise InputError(words, "friction.law")
+        raise InputError(message, "friction.law")
 
 
 def friction_schema() -> dict[str, Any]:
@@ -94,7 +94,7 @@ def friction_schema() -> dict[str, Any]:
         "properties": {"law": {"const": NO_FRICTION}},
         "required": ["law"],
     }
-    found = [none]
+    alternatives = [none]
     for law in friction_laws().values():
         properties: dict[str, Any] = {
             "law": {"const": law.name, "description": f"{law.equation} ({law.source})"}
@@ -103,7 +103,7 @@ def friction_schema() -> dict[str, Any]:
             item.name: quantity_schema(item.metadata["unit"], item.metadata["meaning"])
             for item in fields(law)
         }
-        found.append(
+        alternatives.append(
             {
                 "type": "object",
                 "properties": properties,
@@ -111,4 +111,4 @@ def friction_schema() -> dict[str, Any]:
                 "additionalProperties": False,
             }
         )
-    return {"description": "the friction law and its parameters", "oneOf": found}
+    return {"description": "the friction law and its parameters", "oneOf": alternatives}

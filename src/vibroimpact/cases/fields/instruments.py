@@ -35,7 +35,8 @@ def _table_of(kind: type[InstrumentInCase]) -> type[Section]:
 
 def _field_of(item: DataclassField[Any]) -> tuple[Any, Any]:
     """Return annotation and default of a property of an instrument, as pydantic takes them."""
-    meaning, allowed = item.metadata["meaning"], item.metadata["range"]
+    meaning = item.metadata["meaning"]
+    allowed = item.metadata["range"]
     if isinstance(item.default, int):
         return Seed, Field(item.default, description=meaning)
     annotation = Annotated[float, Quantity(item.metadata["unit"], meaning, allowed)]
@@ -78,8 +79,8 @@ class _OfSignal:
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        words = f"{self.meaning} [the unit of the sensor's output]; a string carries its own unit"
-        return {"type": ["number", "string"], "description": words}
+        phrase = f"{self.meaning} [the unit of the sensor's output]; a string carries its own unit"
+        return {"type": ["number", "string"], "description": phrase}
 
 
 class AmplifierTable(Section):

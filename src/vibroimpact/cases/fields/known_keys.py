@@ -19,7 +19,7 @@ def keys_of(section: type[BaseModel]) -> list[str]:
 
     Examples
     --------
-    >>> from vibroimpact.calibration.section import SpeedsTable
+    >>> from vibroimpact.calibration.observed.section import SpeedsTable
     >>> keys_of(SpeedsTable)
     ['from', 'to', 'number', 'scale']
     """
@@ -31,7 +31,7 @@ def section_at(section: type[BaseModel], path: Sequence[str]) -> type[BaseModel]
 
     Examples
     --------
-    >>> from vibroimpact.cases.schema import CaseTable
+    >>> from vibroimpact.cases.sections.schema import CaseTable
     >>> (
     ...     section_at(CaseTable, ["sensors", "0", "geophone"]).__name__,
     ...     section_at(CaseTable, ["sweep", "classes", "coal"]).__name__,

@@ -56,8 +56,8 @@ def derived(function: Callable[[Of], Value]) -> Callable[[Of], Value]:
         values = section.__dict__
         if name not in values:
             values[name] = function(section)
-        found: Value = values[name]
-        return found
+        value: Value = values[name]
+        return value
 
     return kept
 
@@ -109,7 +109,7 @@ def read_table(kind: type[Table], value: Mapping[str, Any]) -> Table:
 
 
 def check_alternatives(
-    table: Section, one: str, other: str, *, needed: bool, key: str = ""
+    table: Section, first: str, other: str, *, needed: bool, key: str = ""
 ) -> None:
     """Check that at most one of two alternative keys of a table is given, and, if `needed`, that
     one is.
@@ -119,8 +119,8 @@ def check_alternatives(
     InputError
         With `key`, if both are given, or none of those needed.
     """
-    given = [name for name in (one, other) if getattr(table, name) is not None]
+    given = [name for name in (first, other) if getattr(table, name) is not None]
     if len(given) == 2 or (needed and not given):
         raise InputError(
-            f"give either {one} or {other}; {'both are' if given else 'neither is'} given", key
+            f"give either {first} or {other}; {'both are' if given else 'neither is'} given", key
         )

@@ -59,13 +59,13 @@ def check_text(text: str) -> None:
     """
     if max(map(_dots, text.split("\n"))) < DEEPEST:
         return
-    found = _DOTTED.search(text)
-    if found is not None and not text[
-        text.rfind("\n", 0, found.start()) + 1 : found.start()
+    dotted = _DOTTED.search(text)
+    if dotted is not None and not text[
+        text.rfind("\n", 0, dotted.start()) + 1 : dotted.start()
     ].lstrip().startswith("#"):
-        line = text.count("\n", 0, found.start()) + 1
+        line = text.count("\n", 0, dotted.start()) + 1
         raise InputError(
-            f"line {line}: {quoted(found[0])} has more than {DEEPEST} parts joined by dots; "
+            f"line {line}: {quoted(dotted[0])} has more than {DEEPEST} parts joined by dots; "
             "a key may have so many at most, and a text or a comment too"
         )
 
@@ -99,8 +99,8 @@ def _check_table(table: Any, where: tuple[Any, ...], number: int) -> int:
     """
     number += len(table)
     if number > MOST_VALUES:
-        words = "a case is a page of text, and many points of a study go into a CSV file"
-        raise InputError(f"it holds more than {MOST_VALUES} values; {words}")
+        message = "a case is a page of text, and many points of a study go into a CSV file"
+        raise InputError(f"it holds more than {MOST_VALUES} values; {message}")
     if len(where) > DEEPEST:
         raise _too_large(where[:4], f"tables and lists lie more than {DEEPEST} deep in one another")
     for key, value in table.items() if isinstance(table, Mapping) else enumerate(table):
@@ -117,11 +117,11 @@ def _check_table(table: Any, where: tuple[Any, ...], number: int) -> int:
                 )
         elif kind is int:
             if not -LARGEST_WHOLE <= value <= LARGEST_WHOLE:
-                words = (
+                message = (
                     f"the number is too large for a whole number; beyond {LARGEST_WHOLE} write "
                     "it as 1e20"
                 )
-                raise _too_large((*where, key), words)
+                raise _too_large((*where, key), message)
         elif isinstance(value, (dict, list, tuple)):
             number = _check_table(value, (*where, key), number)
     return number
@@ -184,5 +184,5 @@ def check_count(count: int, most: int, what: str) -> None:
         raise InputError(f"there are {count} {what}; {most} are the most")
 
 
-def _too_large(where: tuple[Any, ...], words: str) -> InputError:
-    return InputError(words, ".".join(str(part) for part in where))
+def _too_large(where: tuple[Any, ...], message: str) -> InputError:
+    return InputError(message, ".".join(str(part) for part in where))

@@ -1,1 +1,1 @@
-"""Limits of the theory, one per module; `vibroimpact.cases.limit` defines what a limit is."""
+"""Limits of the theory, one per module; `vibroimpact.cases.limits.limit` says what a limit is."""

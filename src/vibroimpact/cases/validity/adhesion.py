@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit, percent_less
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import Limit, percent_less
 
 WORK_OF_ADHESION = 0.1
 """Work of adhesion assumed [J/m^2]: the upper end of the range of clean and dry bodies,
@@ -61,15 +61,13 @@ def _number(drops: Conditions) -> Array:
 
 def _sentence(drop: Conditions, lost: float) -> str:
     radius = drop.effective_radius
-    speed, pull = (
-        float(sticking_speed(radius, drop.modulus, drop.effective_mass)),
-        1.5 * np.pi * WORK_OF_ADHESION * radius,
-    )
+    speed = float(sticking_speed(radius, drop.modulus, drop.effective_mass))
+    pull = 1.5 * np.pi * WORK_OF_ADHESION * radius
     fall = f"the first restitution would fall by {percent_less(lost).removeprefix('-')} or more"
-    told = "the sphere would stick" if lost >= 1.0 else fall
+    consequence = "the sphere would stick" if lost >= 1.0 else fall
     return (
         f"with a work of adhesion of {WORK_OF_ADHESION:g} J/m^2, the largest of clean and "
-        f"dry bodies, {told}: such spheres stick below "
+        f"dry bodies, {consequence}: such spheres stick below "
         f'{speed:.2g} m/s, and their pull-off force is {pull:.2g} N; law = "jkr" or '
         '"krijt" has adhesion'
     )

@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit, percent_less
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import Limit, percent_less
 from vibroimpact.dynamics.air import AIR_DENSITY, AIR_VISCOSITY, check_thin
 from vibroimpact.dynamics.core.fall import drag_coefficient
 from vibroimpact.errors import InputError

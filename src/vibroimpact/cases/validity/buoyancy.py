@@ -7,8 +7,8 @@ from __future__ import annotations
 import math
 
 from vibroimpact.arrays import Array
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit, percent_less
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import Limit, percent_less
 from vibroimpact.dynamics.air import Air
 from vibroimpact.dynamics.liquid import Liquid
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 import math
 
 from vibroimpact.arrays import Array
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit, percent_more
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import Limit, percent_more
 
 _STIFFENING = {True: (0.200, 0.443), False: (0.272, 1.430)}
 """Coefficients A of clamped plates (True) and others (False): for edges that are free to move in

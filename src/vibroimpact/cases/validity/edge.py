@@ -10,8 +10,8 @@ import math
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import Limit
 from vibroimpact.materials import RIGID
 
 _RADII = 10.0

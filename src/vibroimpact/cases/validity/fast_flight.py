@@ -8,8 +8,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import Limit
 from vibroimpact.dynamics.fluid import HIGHEST_REYNOLDS
 
 _SPEED_OF_SOUND = 343.0
@@ -25,7 +25,9 @@ def _reynolds(drops: Conditions) -> Array:
 
 def _speed(drops: Conditions) -> Array:
     """Return the speed at first touch, also along the plate [m/s]."""
-    drop, normal, along = drops.case["drop"], drops.summary.speed, 0.0
+    drop = drops.case["drop"]
+    normal = drops.summary.speed
+    along = 0.0
     if drop.get("velocity") is not None:
         along = np.hypot(drop["velocity"][0], drop["velocity"][1])
     elif drop.get("angle") is not None:
@@ -37,10 +39,10 @@ def _speed(drops: Conditions) -> Array:
 
 def _medium(drops: Conditions) -> Mapping[str, Array] | None:
     """Return the table of the air or the liquid in which the sphere falls, None in a vacuum."""
-    found: Mapping[str, Array] | None = drops.case["drop"].get("air") or drops.case["contact"].get(
+    medium: Mapping[str, Array] | None = drops.case["drop"].get("air") or drops.case["contact"].get(
         "liquid"
     )
-    return found
+    return medium
 
 
 def _drag_sentence(drop: Conditions, number: float) -> str:
@@ -64,7 +66,8 @@ def _mach(drops: Conditions) -> Array:
 
 
 def _sound_sentence(drop: Conditions, number: float) -> str:
-    start, given = "", drop.case["drop"]
+    start = ""
+    given = drop.case["drop"]
     if given.get("height") is not None:
         key = "drop.speed" if given.get("velocity") is None else "drop.velocity without drop.height"
         start = f"begin with the speed at first touch, {key}, and "

@@ -7,8 +7,8 @@ from functools import cache
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit, percent_less
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import Limit, percent_less
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.structures.sphere_compliance import FITTED, sphere_term
 

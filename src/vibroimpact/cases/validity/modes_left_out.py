@@ -8,13 +8,14 @@ from functools import partial
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit, in_kilohertz, two_digits
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import Limit, in_kilohertz, two_digits
 from vibroimpact.units.display import text
 
 _TRUNCATED = 0.05  # allowed relative change of the largest force by truncated modes
 # periods of the highest mode in a contact: doubted below, and recommended
-_CYCLES, _ENOUGH = 1.5, 3.0
+_CYCLES = 1.5
+_ENOUGH = 3.0
 
 
 def _number(body: str, drops: Conditions) -> Array:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from vibroimpact.arrays import Array
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import Limit
 from vibroimpact.dynamics.liquid import CRITICAL_STOKES, Liquid, restitution_kept
 
 

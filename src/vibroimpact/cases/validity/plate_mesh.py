@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit, percent_more, two_digits
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import Limit, percent_more, two_digits
 
 PLATE_MESH_COMPLIANCE = "plate_mesh_compliance_m_N"
 """The fact with the compliance that the elements of the plate lack at the contact point."""

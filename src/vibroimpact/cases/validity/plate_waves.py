@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit, percent_less
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import Limit, percent_less
 from vibroimpact.dynamics.truncation import time_of_contact
 
 PLATE_THEORY_INERTIA = "plate_theory_inertia_m_s2_N"

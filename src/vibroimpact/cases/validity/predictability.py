@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit, two_digits
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import Limit, two_digits
 from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE
 
 _PREDICTED = 1e-3  # largest relative change of an impact that is not doubted

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import Limit
 
 
 def _number(drops: Conditions) -> Array:

@@ -9,8 +9,8 @@ import math
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import Limit
 
 _FAR = 1.05  # times a speed at an end
 
@@ -18,26 +18,25 @@ _FAR = 1.05  # times a speed at an end
 def _number(drops: Conditions) -> Array:
     if not drops.by_speed:
         return math.nan
-    fastest, slowest = (
-        min(one.fastest for one in drops.by_speed.values()),
-        max(one.slowest for one in drops.by_speed.values()),
-    )
+    fastest = min(function.fastest for function in drops.by_speed.values())
+    slowest = max(function.slowest for function in drops.by_speed.values())
     return np.fmax(
         drops.summary.speed / fastest, slowest / np.fmin(drops.summary.slowest, drops.summary.speed)
     )
 
 
 def _sentence(drop: Conditions, number: float) -> str:
-    slow, fast = float(np.fmin(drop.summary.slowest, drop.summary.speed)), float(drop.summary.speed)
-    name, one = max(
+    slow = float(np.fmin(drop.summary.slowest, drop.summary.speed))
+    fast = float(drop.summary.speed)
+    name, function = max(
         drop.by_speed.items(), key=lambda item: max(fast / item[1].fastest, item[1].slowest / slow)
     )
     speeds = f"the first impact comes at {fast:.4g} m/s" + (
         "" if slow == fast else f", the slowest at {slow:.4g} m/s"
     )
     return (
-        f"contact.{name} is given for approach speeds from {one.slowest:.4g} to "
-        f"{one.fastest:.4g} m/s, and {speeds}: "
+        f"contact.{name} is given for approach speeds from {function.slowest:.4g} to "
+        f"{function.fastest:.4g} m/s, and {speeds}: "
         "beyond the ends the value at the nearest one holds; give it for more speeds"
     )
 

@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import Limit
 
 _SAME = 1e-9
 """Relative difference up to which a stiffness is that of the materials, not one that was given."""

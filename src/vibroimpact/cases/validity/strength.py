@@ -8,8 +8,8 @@ from functools import partial
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit, two_digits
+from vibroimpact.cases.limits.conditions import Conditions
+from vibroimpact.cases.limits.limit import Limit, two_digits
 from vibroimpact.materials import RIGID, Material
 
 # Johnson 1985, section 6.1: yield begins below the surface at a peak pressure of 1.6 times the

@@ -239,9 +239,9 @@ def _most_likely(
     return best
 
 
-def _text(words: Words, value: float) -> str:
+def _text(phrase: Words, value: float) -> str:
     """Return a part of a message, which may be a function of the value."""
-    return words if isinstance(words, str) else words(abs(value))
+    return phrase if isinstance(phrase, str) else phrase(abs(value))
 
 
 def _corrections(value: float, unit: str, sizes: Mapping[str, float]) -> Iterator[_Correction]:

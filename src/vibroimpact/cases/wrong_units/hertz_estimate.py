@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.cases.conditions import Conditions, DropSummary
+from vibroimpact.cases.limits.conditions import Conditions, DropSummary
 from vibroimpact.contact.pair import hertz_stiffness
 from vibroimpact.contact.power_law import HERTZ_TIME
 from vibroimpact.materials import Material
@@ -100,8 +100,10 @@ class HertzEstimate:
     @cached_property
     def stiffness(self) -> float:
         """Hertz's stiffness of the two bodies [N/m^1.5]."""
-        found = float(hertz_stiffness(self._conditions.modulus, self._conditions.effective_radius))
-        return found if math.isfinite(found) else math.nan
+        stiffness = float(
+            hertz_stiffness(self._conditions.modulus, self._conditions.effective_radius)
+        )
+        return stiffness if math.isfinite(stiffness) else math.nan
 
     @cached_property
     def depth(self) -> float:

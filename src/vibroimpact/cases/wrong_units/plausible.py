@@ -78,7 +78,7 @@ def between(low: float = 0.0, high: float = math.inf, *, below: str = "", above:
 
 def near(
     what: Callable[[HertzEstimate], float],
-    words: str,
+    phrase: str,
     unit: str,
     *,
     factor: float = 300.0,
@@ -90,7 +90,7 @@ def near(
     ----------
     what : callable
         Returns the estimate [SI].
-    words : str
+    phrase : str
         Name of the estimate in messages.
     unit : str
         Its SI unit.
@@ -105,7 +105,7 @@ def near(
 
         def said(value: float) -> str:
             return (
-                f"is {ratio_text(value / reference)} than {words} {number_text(reference, 4)} "
+                f"is {ratio_text(value / reference)} than {phrase} {number_text(reference, 4)} "
                 f"{unit}"
             )
 

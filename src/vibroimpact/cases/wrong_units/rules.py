@@ -175,23 +175,21 @@ def contact_stiffness(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plau
     Linear springs are often chosen soft to save time steps, so they are doubted only if the
     indentation reaches 0.3 of the radius.
     """
-    exponent, at = (
-        estimate.exponent,
-        f" at his largest indentation, {number_text(estimate.depth, 2)} m,",
-    )
+    exponent = estimate.exponent
+    at = f" at his largest indentation, {number_text(estimate.depth, 2)} m,"
     reference = estimate.stiffness * estimate.depth ** (1.5 - exponent)
     unit = stiffness_unit(exponent)
-    low, words = (
-        reference / 2000.0,
-        "Hertz's" if exponent == 1.5 else f"what gives Hertz's force{at}",
-    )
+    low = reference / 2000.0
+    phrase = "Hertz's" if exponent == 1.5 else f"what gives Hertz's force{at}"
     if exponent == 1.0:
         low = min(
             reference / 100.0, estimate.mass * (estimate.speed / (0.3 * estimate.radius)) ** 2
         )
 
     def said(value: float) -> str:
-        return f"is {ratio_text(value / reference)} than {words} {number_text(reference, 4)} {unit}"
+        return (
+            f"is {ratio_text(value / reference)} than {phrase} {number_text(reference, 4)} {unit}"
+        )
 
     remedy = (
         "leave it out to take Hertz's"
@@ -264,7 +262,8 @@ def run_duration(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausible
     """Return the range of the duration of a run, which ends after the first contact at
     the earliest.
     """
-    touch, lasts = estimate.touch, float(np.nan_to_num(estimate.contact_time))
+    touch = estimate.touch
+    lasts = float(np.nan_to_num(estimate.contact_time))
     # a plate that is moved is touched at another time
     earliest = 0.0 if estimate.case["plate"].get("motion") else touch + lasts
 

@@ -163,7 +163,7 @@ def follow_piece(
     ends: int,
     first: float,
     second: float,
-    found: Moving,
+    moving: Moving,
     into: int,
 ) -> None:
     """Write the motion of a drop at the end of a piece into a column.
@@ -222,20 +222,20 @@ def follow_piece(
                 change = max(change, time * abs(now[component, node] - before[component, node]))
         if not change > _CLOSE * fastest:
             break
-    found.time[into] = begin.time[at] + time
-    found.lost[into] = begin.lost[at]
+    moving.time[into] = begin.time[at] + time
+    moving.lost[into] = begin.lost[at]
     for node in range(nodes):
-        found.lost[into] += time * rule.integral[nodes - 1, node] * power[node]
+        moving.lost[into] += time * rule.integral[nodes - 1, node] * power[node]
     for component in range(components):
         gained = 0.0
         moved = 0.0
         for node in range(nodes):
             gained += rule.integral[nodes - 1, node] * now[component, node]
             moved += rule.moved[node] * now[component, node]
-        found.place[component, into] = begin.place[component, at] + time * (
+        moving.place[component, into] = begin.place[component, at] + time * (
             begin.velocity[component, at] + time * moved
         )
-        found.velocity[component, into] = begin.velocity[component, at] + time * gained
+        moving.velocity[component, into] = begin.velocity[component, at] + time * gained
 
 
 @compiled(lambda t: t.of(Moving)(t.integer, t.integer))

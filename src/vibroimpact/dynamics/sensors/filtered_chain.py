@@ -28,7 +28,7 @@ from vibroimpact.dynamics.sensors.antialias import FINENESS, HALF_LENGTH, kernel
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain
 from vibroimpact.dynamics.sensors.pulses import gauss_rule
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
-from vibroimpact.structures.lagrange_shares import STENCIL, lagrange_shares
+from vibroimpact.structures.finite_elements.lagrange_shares import STENCIL, lagrange_shares
 
 _ROWS = 64
 """Points of the table that are computed at once."""

@@ -54,26 +54,26 @@ def write(drop: Drop) -> dict[str, bytes]:
 
     tables = tables_of(drop)
     units: dict[str, Any] = {
-        name: {column: one.unit for column, one in tables[name].items()}
+        name: {column: table.unit for column, table in tables[name].items()}
         for name in ("impacts", "history")
         if name in tables
     }
-    found: dict[str, Any] = {name: _values(tables[name]) for name in units}
+    variables: dict[str, Any] = {name: _values(tables[name]) for name in units}
     legal = legal_names(list(drop.signals))
     plain = plain_names(list(drop.signals))
     signals = {
         legal[name]: _signal(drop, name, tables[f"sensors/{plain[name]}"]) for name in drop.signals
     }
     if signals:
-        found["signals"] = signals
+        variables["signals"] = signals
     if drop.surface:
-        found["surface"] = {name: np.asarray(values) for name, values in drop.surface.items()}
+        variables["surface"] = {name: np.asarray(values) for name, values in drop.surface.items()}
         units["surface"] = {name: "s" if name == "time" else "m" for name in drop.surface}
-    found["drop"], units["drop"] = _facts(drop)
+    variables["drop"], units["drop"] = _facts(drop)
     file = BytesIO()
     savemat(
         file,
-        {**found, "units": units},
+        {**variables, "units": units},
         long_field_names=True,
         oned_as="column",
         do_compression=True,
@@ -96,14 +96,14 @@ def legal_names(names: list[str]) -> dict[str, str]:
         start if re.match("[A-Za-z]", start) and start not in _KEYWORDS else f"s_{start}"
         for start in starts
     ]
-    found: set[str] = set()
+    taken: set[str] = set()
     numbers: dict[str, int] = {}
     for place, name in enumerate(legal):
         tried = start = name[:_LONGEST]
-        while tried in found:
+        while tried in taken:
             numbers[start] = numbers.get(start, 1) + 1
             tried = f"{name[: _LONGEST - 1 - len(str(numbers[start]))]}_{numbers[start]}"
-        found.add(tried)
+        taken.add(tried)
         legal[place] = tried
     return dict(zip(names, legal, strict=True))
 
@@ -179,12 +179,13 @@ def _facts(drop: Drop) -> tuple[dict[str, Any], dict[str, Any]]:
 
 def _parameters(laws: Sequence[Parameters]) -> tuple[dict[str, Any], dict[str, str]]:
     """Return each parameter of a law as an array over the laws of the impacts, and its unit."""
-    values, units = {}, {}
+    values = {}
+    units = {}
     for item in fields(laws[0]):
-        found = [getattr(one, item.name) for one in laws]
-        if found[0] is not None and not item.metadata["memory"]:
+        of_laws = [getattr(law, item.name) for law in laws]
+        if of_laws[0] is not None and not item.metadata["memory"]:
             values[item.name], units[item.name] = (
-                np.asarray(found),
+                np.asarray(of_laws),
                 unit_of(item, getattr(laws[0], "exponent", 1)),
             )
     return values, units

@@ -37,8 +37,8 @@ def _bytes(table: Table, title: str) -> bytes:
     arrays = [pyarrow.array(column.values, from_pandas=True) for column in table.values()]
     metadata = [{"unit": column.unit, "long_name": column.meaning} for column in table.values()]
     fields = [
-        pyarrow.field(name, array.type, metadata=words)
-        for name, array, words in zip(table, arrays, metadata, strict=True)
+        pyarrow.field(name, array.type, metadata=phrase)
+        for name, array, phrase in zip(table, arrays, metadata, strict=True)
     ]
     result = pyarrow.Table.from_arrays(
         arrays, schema=pyarrow.schema(fields, metadata={"title": title})

@@ -30,7 +30,8 @@ then accurate to 0.3 %.
 """
 _MOST_SAMPLES = 2_000_000
 """Largest number of samples of the history."""
-_SPHERE, _FIRST_SENSOR = 1, 2  # nodes
+_SPHERE = 1
+_FIRST_SENSOR = 2
 _UP = 3  # direction +z
 _TURNING = 3  # what the number of a rotation about an axis is beyond that of the direction along it
 _LINE = 80
@@ -87,7 +88,8 @@ def write(drop: Drop) -> dict[str, bytes]:
         warnings.simplefilter("ignore", ResourceWarning)
         path = Path(folder, "drop.uff")
         pyuff.UFF(str(path)).write_sets(
-            [_header(drop), _si(), *(_dataset(one, drop) for one in functions)], "overwrite"
+            [_header(drop), _si(), *(_dataset(function, drop) for function in functions)],
+            "overwrite",
         )
         return {file_name(drop, ".uff"): path.read_bytes()}
 
@@ -120,9 +122,9 @@ def _of_signals(drop: Drop) -> Iterator[_Function]:
     for node, (name, signal) in enumerate(drop.signals.items(), _FIRST_SENSOR):
         sensor = signal.sensor
         if len(signal.value) > 1:
-            words = f"{sensor.quantity} of {plain_words(name)}"
+            phrase = f"{sensor.quantity} of {plain_words(name)}"
             yield _Function(
-                words,
+                phrase,
                 node,
                 _direction(sensor.direction),
                 _QUANTITIES[sensor.quantity],
@@ -139,8 +141,8 @@ def _of_history(drop: Drop) -> Iterator[_Function]:
     motion = motion_at(
         drop.history, np.arange(int(drop.history["time_s"][-1] * rate * (1.0 + 1e-12)) + 1) / rate
     )
-    for name, (words, kind, unit) in SPHERE_FUNCTIONS.items():
-        yield _Function(words, _SPHERE, _UP, kind, unit, rate, motion[name])
+    for name, (phrase, kind, unit) in SPHERE_FUNCTIONS.items():
+        yield _Function(phrase, _SPHERE, _UP, kind, unit, rate, motion[name])
     for name, column in OBLIQUE_HISTORY_COLUMNS.items():
         if name in motion:
             what, axis, _ = name.split("_", 2)
@@ -172,12 +174,12 @@ def _header(drop: Drop) -> dict[str, Any]:
         for what in ("date", "time")
         for when in ("db_created", "db_saved", "file_written")
     }
-    words = {
+    phrase = {
         "model_name": plain_words(drop.name),
         "description": "a sphere that falls on a plate",
         "db_app": "vibroimpact",
     }
-    return {"type": 151, **words, "program": f"vibroimpact {__version__}", **date}
+    return {"type": 151, **phrase, "program": f"vibroimpact {__version__}", **date}
 
 
 def _si() -> dict[str, Any]:
@@ -185,32 +187,32 @@ def _si() -> dict[str, Any]:
     return {"type": 164, "units_code": 1, "units_description": "SI", "temp_mode": 1, **scales}
 
 
-def _dataset(one: _Function, drop: Drop) -> dict[str, Any]:
+def _dataset(function: _Function, drop: Drop) -> dict[str, Any]:
     labels = {
         "abscissa_axis_lab": "time",
         "abscissa_axis_units_lab": "s",
-        "ordinate_axis_units_lab": one.unit,
+        "ordinate_axis_units_lab": function.unit,
     }
     return {
         "type": 58,
         "binary": 1,
-        "id1": one.identification[:_LINE],
+        "id1": function.identification[:_LINE],
         "id2": plain_words(drop.name),
         "func_type": 1,
         "rsp_ent_name": "NONE",
-        "rsp_node": one.node,
-        "rsp_dir": one.direction,
+        "rsp_node": function.node,
+        "rsp_dir": function.direction,
         "ref_ent_name": "NONE",
         "ref_node": 0,
         "ref_dir": 0,
         "abscissa_spacing": 1,
         "abscissa_spec_data_type": 17,
-        "ordinate_spec_data_type": one.kind,
+        "ordinate_spec_data_type": function.kind,
         "orddenom_spec_data_type": 0,
         "z_axis_spec_data_type": 0,
         **labels,
-        "x": np.array([0.0, 1.0 / one.rate]),  # only the start and the step are written
-        "data": one.values,
+        "x": np.array([0.0, 1.0 / function.rate]),  # only the start and the step are written
+        "data": function.values,
     }
 
 
@@ -234,14 +236,14 @@ def _notes(drop: Drop) -> list[str]:
     nodes = nodes if len(nodes) <= _MOST_NAMED else [*nodes[: _MOST_NAMED - 1], "and so on"]
     notes = [
         f"Node {_SPHERE} is the sphere"
-        + "".join(f", {words}" for words in nodes)
+        + "".join(f", {phrase}" for phrase in nodes)
         + "; directions are the plate's, +z upwards."
     ]
     if rate is None:
         notes.append(f"The history is left out: {_why_no_history(drop)}.")
     else:
-        words = f"The history is sampled at {rate:g} Hz, without a filter against aliasing"
-        notes.append(f"{words}: at least {_IN_CONTACT} times in the shortest contact.")
+        phrase = f"The history is sampled at {rate:g} Hz, without a filter against aliasing"
+        notes.append(f"{phrase}: at least {_IN_CONTACT} times in the shortest contact.")
     slanting = [
         one_line(name)
         for name, signal in drop.signals.items()
@@ -252,11 +254,15 @@ def _notes(drop: Drop) -> list[str]:
             f"The direction of {', '.join(slanting)} lies along no axis; it is written as a scalar."
         )
     rates = {signal.sensor.rate for signal in drop.signals.values()} | ({rate} if rate else set())
-    rough = sorted(one for one in rates if float(f"{1.0 / one:.5e}") != 1.0 / one)
+    rough = sorted(
+        sampling_rate
+        for sampling_rate in rates
+        if float(f"{1.0 / sampling_rate:.5e}") != 1.0 / sampling_rate
+    )
     if rough:
+        rates_text = ", ".join(f"{sampling_rate:g} Hz" for sampling_rate in rough)
         notes.append(
-            f"The time step of {', '.join(f'{one:g} Hz' for one in rough)} is rounded to "
-            "the six digits that the format has."
+            f"The time step of {rates_text} is rounded to the six digits that the format has."
         )
     return notes
 

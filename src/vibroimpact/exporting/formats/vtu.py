@@ -19,13 +19,16 @@ Cells = tuple[NDArray[np.float32], NDArray[np.int32]]
 the poles.
 """
 
-_EVEN, _IMPACTS = 200, 20
+_EVEN = 200
+_IMPACTS = 20
 """Number of equidistant frames, and of impacts whose first touch, maximum indentation and
 release are further frames.
 """
-_AROUND, _DOWN = 32, 16
+_AROUND = 32
+_DOWN = 16
 """Quadrilaterals of the sphere around its axis and from pole to pole."""
-_QUADRILATERAL, _BRICK = 9, 12
+_QUADRILATERAL = 9
+_BRICK = 12
 
 
 def write(drop: Drop) -> dict[str, bytes]:
@@ -40,13 +43,13 @@ def write(drop: Drop) -> dict[str, bytes]:
     times, path = _sphere_path(drop)
     points, cells = _sphere(drop)
     moved = [points + at for at in path.astype(np.float32)]
-    files = _series("sphere", times, [_text(one, cells) for one in moved])
+    files = _series("sphere", times, [_text(nodes, cells) for nodes in moved])
     if drop.surface:
         points, cells, on_plate = _surface(drop)
         lifted = np.zeros((len(times), len(points), 3), dtype=np.float32)
         lifted[:, :, :2] = _plate_path(drop, times)[:, None, :2]
         lifted[:, :, 2] = drop.surface["height"].reshape(len(times), -1)[:, on_plate]
-        return files | _series("plate", times, [_text(points, cells, one) for one in lifted])
+        return files | _series("plate", times, [_text(points, cells, nodes) for nodes in lifted])
     if drop.plate_size is None:
         return files
     boxes = [_box(drop.plate_size, at) for at in _plate_path(drop, times)]
@@ -60,7 +63,8 @@ def _sphere_path(drop: Drop) -> tuple[Floats, Floats]:
     the plate, and its height [m] (frames, 3).
     """
     if drop.surface:
-        times, height = drop.surface["time"], drop.surface["sphere_position"]
+        times = drop.surface["time"]
+        height = drop.surface["sphere_position"]
     else:
         times = _times(drop)
         height = motion_at(drop.history, times)["position_m"]

@@ -62,7 +62,8 @@ def _file(signal: Signal) -> bytes:
             f'the {len(signal.value)} samples of "{one_line(signal.sensor.name)}" do not '
             "fit into a WAV file, which holds 4 GB"
         )
-    scale, file = full_scale(signal), BytesIO()
+    scale = full_scale(signal)
+    file = BytesIO()
     wavfile.write(file, rate, (signal.value / scale).astype(np.float32))
     return _with_comment(
         file.getvalue(),
@@ -71,9 +72,9 @@ def _file(signal: Signal) -> bytes:
     )
 
 
-def _with_comment(wave: bytes, words: str) -> bytes:
+def _with_comment(wave: bytes, phrase: str) -> bytes:
     """Return a WAV file with a comment, as the chunk LIST INFO ICMT at its end."""
-    text = words.encode("utf-8") + b"\0"
+    text = phrase.encode("utf-8") + b"\0"
     text += b"\0" * (len(text) % 2)  # chunks start at even offsets
     chunk = b"INFO" + b"ICMT" + struct.pack("<I", len(text)) + text
     content = wave[8:] + b"\0" * (len(wave) % 2) + b"LIST" + struct.pack("<I", len(chunk)) + chunk

@@ -57,7 +57,7 @@ def range_widths(parts: Mapping[str, RenderedPart]) -> dict[str, RangeWidths]:
     """Return the widths of the ranges by which values are explained, by part; only parts
     with explained values.
     """
-    found = {}
+    widths_of_parts = {}
     for name, part in parts.items():
         widths = [
             (row["range_high"] - row["range_low"]) / abs(float(row["printed"]))
@@ -65,5 +65,5 @@ def range_widths(parts: Mapping[str, RenderedPart]) -> dict[str, RangeWidths]:
             if row["verdict"] == Verdict.EXPLAINED.value
         ]
         if widths:
-            found[name] = RangeWidths(len(widths), min(widths), max(widths))
-    return found
+            widths_of_parts[name] = RangeWidths(len(widths), min(widths), max(widths))
+    return widths_of_parts

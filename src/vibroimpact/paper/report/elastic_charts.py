@@ -230,16 +230,16 @@ _PERIODS = 3.0
 
 
 def _last_impact_note(runs: Runs) -> str:
-    found = []
+    accelerations = []
     for treatment in TREATMENTS:
         response = runs.treated(3, treatment)
         history = history_of(response)
         since = history["time_s"] >= response.impacts["time_s"][-1]
-        found.append(
+        accelerations.append(
             f"{treatment} {text(largest(history['plate_acceleration_m_s2'][since]), 'm/s2', 3)}"
         )
     return (
-        f"In the fifth impact: {', '.join(found)}; printed: over "
+        f"In the fifth impact: {', '.join(accelerations)}; printed: over "
         f"{printed('plate.acceleration.5').text} m/s²."
     )
 

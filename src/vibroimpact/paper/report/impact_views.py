@@ -31,12 +31,12 @@ def impact_views(
     level, level_label : float and str, optional
         Value from which the vertical axis counts in the views, and its label.
     """
-    found = []
+    views = []
     for impact in range(min(len(response.impacts["time_s"]) for response in responses)):
         touch = float(responses[0].impacts["time_s"][impact])
         (before, after) = shown(impact)
         since = f"Time since first touch of impact {impact + 1}"
-        found.append(
+        views.append(
             View(
                 f"Impact {impact + 1}",
                 touch - before,
@@ -47,7 +47,7 @@ def impact_views(
                 level_label=level_label,
             )
         )
-    return tuple(found)
+    return tuple(views)
 
 
 def longest_contact(responses: Sequence[Response], impact: int) -> float:

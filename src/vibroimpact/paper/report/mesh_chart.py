@@ -13,8 +13,8 @@ from vibroimpact.charts.marks import Facets, Line, Mark, Outline, Points
 from vibroimpact.paper.printed import printed
 from vibroimpact.paper.runs import Runs
 from vibroimpact.report.projection import VIEWER, light_on, projected
-from vibroimpact.structures.mesh import Mesh
-from vibroimpact.structures.surface import Faces, outer_faces
+from vibroimpact.structures.finite_elements.mesh import Mesh
+from vibroimpact.structures.finite_elements.surface import Faces, outer_faces
 
 _FINE = 6
 """Subdivisions of each side of a curved face."""

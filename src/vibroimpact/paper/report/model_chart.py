@@ -16,7 +16,9 @@ from vibroimpact.charts.marks import Arrow, Facets, Label, Line, Mark, Outline
 from vibroimpact.report.projection import TURN, light_on, projected
 from vibroimpact.units.display import text
 
-_DRAWN_DROP, _BAR_LENGTH, _OFFSET = 0.36, 0.13, 0.05
+_DRAWN_DROP = 0.36
+_BAR_LENGTH = 0.13
+_OFFSET = 0.05
 """Height at which the sphere is drawn, length of the bars, and offset of dimension lines [m]."""
 _STRIPS = 24
 """Strips of the visible side of a bar."""
@@ -127,19 +129,19 @@ def _sphere(radius: float, drop: float) -> list[Mark]:
         _GAP,
         np.array([(x + radius, height), (1.08 * beside, height)]),
     ]
-    words = f"{text(drop, 'm', 1)}, not to scale"
+    phrase = f"{text(drop, 'm', 1)}, not to scale"
     return [
         Line(np.array([x, x]), np.array([ground, height]), role="reference"),
         Outline(x + radius * np.cos(_ROUND), height + radius * np.sin(_ROUND), role="ball"),
         _line(leads, "muted"),
         Arrow((beside, ground), (beside, height), both=True),
-        Label(beside, ground + 0.62 * (height - ground), words, "left"),
+        Label(beside, ground + 0.62 * (height - ground), phrase, "left"),
         Label(x - radius, height, f"radius {_millimetres(radius)}", "right"),
     ]
 
 
 def _dimension(
-    start: Point, end: Point, aside: tuple[float, float], words: str, anchor: str
+    start: Point, end: Point, aside: tuple[float, float], phrase: str, anchor: str
 ) -> list[Mark]:
     """Return a dimension between two points, offset along x and y, with the lines that
     lead to it.
@@ -151,7 +153,7 @@ def _dimension(
         leads += [projected(np.array([point, point + 1.15 * shift])), _GAP]
     first, last = projected(ends + shift).tolist()
     arrow = Arrow((first[0], first[1]), (last[0], last[1]), both=True)
-    label = Label(0.5 * (first[0] + last[0]), 0.5 * (first[1] + last[1]), words, anchor)
+    label = Label(0.5 * (first[0] + last[0]), 0.5 * (first[1] + last[1]), phrase, anchor)
     return [_line(leads, "muted"), arrow, label]
 
 

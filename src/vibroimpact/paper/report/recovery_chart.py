@@ -31,7 +31,8 @@ penetration [m].
 _SEARCH_MARGIN = 20.0
 """Margin of the searched restitutions around the window, in half-widths of the band."""
 
-_POINTS, _ROWS = 401, 121
+_POINTS = 401
+_ROWS = 121
 
 
 class _Window(NamedTuple):
@@ -50,9 +51,9 @@ def recovery_chart(runs: Runs) -> Chart:
     runs : Runs
         The simulations.
     """
-    found = recover_parameters(runs)
-    e = found.restitution
-    d = found.penetration
+    recovered = recover_parameters(runs)
+    e = recovered.restitution
+    d = recovered.penetration
     given = printed("full_damping_penetration").value
     close = _Window(
         (e.value - _ZOOM[0], e.value + _ZOOM[0]), (d.value - _ZOOM[1], d.value + _ZOOM[1])
@@ -62,23 +63,23 @@ def recovery_chart(runs: Runs) -> Chart:
     widths = np.array([e.value - e.deviation]), np.array([e.value + e.deviation])
     estimate: tuple[Mark, ...] = (
         Points(
-            np.array([found.round_values[1]]),
-            np.array([found.round_values[0]]),
+            np.array([recovered.round_values[1]]),
+            np.array([recovered.round_values[0]]),
             "round values",
             "total",
         ),
-        Line(d.value + d.deviation * np.array([-1.0, 1.0]), np.full(2, e.value), role="matched"),
+        Line(d.value + d.deviation * np.array([-1.0, 1.0]), np.full(2, e.value), role="mark"),
         Points(joint.x, joint.y, joint.name, joint.role, low=widths[0], high=widths[1]),
     )
     as_printed = Level(given, f"d_max as printed, {1e6 * given:g} µm", "dotted", upright=True)
     panels = (
-        _panel(found, searched, (as_printed, joint), "All that was searched"),
-        _panel(found, close, estimate, "Where they cross, enlarged"),
+        _panel(recovered, searched, (as_printed, joint), "All that was searched"),
+        _panel(recovered, close, estimate, "Where they cross, enlarged"),
     )
     caption = (
         "Each piece of evidence but Table 2 is a line in the plane of e_h and d_max, with a "
         "band as wide as rounding or its own scatter "
-        f"allows, where it is not wider than the picture. {_caption(found)}"
+        f"allows, where it is not wider than the picture. {_caption(recovered)}"
     )
     return Chart(
         "recovery",
@@ -90,64 +91,64 @@ def recovery_chart(runs: Runs) -> Chart:
 
 
 def _panel(
-    found: RecoveredParameters, window: _Window, marks: tuple[Mark, ...], title: str
+    recovered: RecoveredParameters, window: _Window, marks: tuple[Mark, ...], title: str
 ) -> Panel:
     log = window.penetrations[1] > 10.0 * window.penetrations[0]
     across = Axis("Full-damping penetration d_max", "m", log=log, range=window.penetrations)
     return Panel(
         across,
         Axis("Restitution asked for, e_h", range=window.restitutions),
-        (*_lines(found, window), *marks),
+        (*_lines(recovered, window), *marks),
         title,
     )
 
 
-def _drawn_evidence(found: RecoveredParameters) -> list[Evidence]:
+def _drawn_evidence(recovered: RecoveredParameters) -> list[Evidence]:
     """Return the evidence to draw: that without sampling bias."""
-    return [one for one in found.evidence if not one.sampled]
+    return [evidence for evidence in recovered.evidence if not evidence.sampled]
 
 
-def _caption(found: RecoveredParameters) -> str:
+def _caption(recovered: RecoveredParameters) -> str:
     """Return the sentences on the distances of the joint estimate and of the printed
     penetration from the bands.
     """
-    off = [off_joint(found, one) for one in _drawn_evidence(found)]
+    off = [off_joint(recovered, evidence) for evidence in _drawn_evidence(recovered)]
     given = printed("full_damping_penetration").value
-    met = penetration_bands(found, given)
+    met = penetration_bands(recovered, given)
     return (
-        f"The joint estimate, e_h = {found.restitution.value:.4f} and d_max = "
-        f"{1e6 * found.penetration.value:.2f} µm, lies in "
-        f"{sum(one <= 1.0 for one in off)} of the {len(off)} bands, and from no line "
+        f"The joint estimate, e_h = {recovered.restitution.value:.4f} and d_max = "
+        f"{1e6 * recovered.penetration.value:.2f} µm, lies in "
+        f"{sum(distance <= 1.0 for distance in off)} of the {len(off)} bands, and from no line "
         f"farther than {max(off):.1f} times half the width of "
         f"its band; the printed {1e6 * given:g} µm lies in {sum(met) or 'none'} of the "
         f"{len(met)} bands that depend on d_max alone."
     )
 
 
-def _lines(found: RecoveredParameters, window: _Window) -> list[Mark]:
+def _lines(recovered: RecoveredParameters, window: _Window) -> list[Mark]:
     """Return the lines of the evidence in a window, with their bands below them."""
     (low, high) = window.restitutions
     penetrations = np.geomspace(*window.penetrations, _ROWS)
     bands: list[Mark] = []
     lines: list[Mark] = []
-    for number, one in enumerate(_drawn_evidence(found)):
-        restitution_alone, penetration_alone = found.alone[one.name]
+    for number, evidence in enumerate(_drawn_evidence(recovered)):
+        restitution_alone, penetration_alone = recovered.alone[evidence.name]
         role = series(number)
         if restitution_alone is None and penetration_alone is not None:
             value = penetration_alone.value
-            half = one.half_width * penetration_alone.deviation
+            half = evidence.half_width * penetration_alone.deviation
             bands.append(
                 Spans(np.array([value - half]), np.array([value + half]), role=f"{role} band")
             )
-            lines.append(Level(value, one.name, role, upright=True))
+            lines.append(Level(value, evidence.name, role, upright=True))
         elif restitution_alone is not None:
-            half = one.half_width * restitution_alone.deviation
+            half = evidence.half_width * restitution_alone.deviation
             searched = (low - _SEARCH_MARGIN * half, high + _SEARCH_MARGIN * half)
             restitutions = np.linspace(
                 max(RESTITUTIONS[0], searched[0]), min(RESTITUTIONS[1], searched[1]), _POINTS
             )
-            line = implied_restitution(one, restitutions, penetrations)
+            line = implied_restitution(evidence, restitutions, penetrations)
             if half < 0.5 * (high - low):  # a wider band would only tint the background
                 bands.append(Band(penetrations, line - half, line + half, role=f"{role} band"))
-            lines.append(Line(penetrations, line, one.name, role))
+            lines.append(Line(penetrations, line, evidence.name, role))
     return bands + lines

@@ -20,7 +20,9 @@ from vibroimpact.paper.runs import Runs
 from vibroimpact.runs.chart_data import MARGIN
 from vibroimpact.units.display import digits, fixed, text
 
-THEORY, CONSTANT, VARIABLE = "theory", "constant damping", "variable damping"
+THEORY = "theory"
+CONSTANT = "constant damping"
+VARIABLE = "variable damping"
 _CASES = {THEORY: "type1-theory", CONSTANT: "type1-constant", VARIABLE: "type1-variable"}
 _ROLES = {THEORY: "under", CONSTANT: "series 1", VARIABLE: "series 2"}
 
@@ -128,11 +130,11 @@ def _last_impact_note(responses: Responses) -> str:
     """Return the sentence on the start of the last impact relative to the theory."""
     begins = {name: float(response.impacts["time_s"][-1]) for name, response in responses.items()}
     later = {name: time - begins[THEORY] for name, time in begins.items() if name != THEORY}
-    told = (
+    differences = (
         f"{text(abs(time), 's', 2)} {'late' if time > 0.0 else 'early'} with {name}"
         for name, time in later.items()
     )
-    return f"The last impact begins {' and '.join(told)}."
+    return f"The last impact begins {' and '.join(differences)}."
 
 
 def _fourth_rebound_note(responses: Responses) -> str:

@@ -96,7 +96,7 @@ def _errors(runs: Runs, quantity: str, step: float, spacing: float) -> Panel:
         marks.append(_exact_line(x, ranges[damping, 0.0][:, 0]))
         texts = tuple(f"impact {impact}, {damping} damping" for impact in IMPACTS)
         values = np.array([table2_error(quantity, damping, impact).value for impact in IMPACTS])
-        marks.append(Points(x, values, "printed", "matched", texts))
+        marks.append(Points(x, values, "printed", "published", texts))
     ticks = tuple(float(impact) for impact in IMPACTS)
     across = Axis("Impact", range=(0.5, len(IMPACTS) + 0.5), ticks=ticks)
     up = Axis("Below the theory's by", "%", range=(low, high))

@@ -110,7 +110,7 @@ def _marks(runs: Runs, kind: int, name: str, step: float) -> tuple[Mark, ...]:
         marker = np.array([_LIMIT * STEPS[0]])
         resolved = np.array([resolved_impact(problem)[name]])
         marks.append(Points(marker, resolved, f"{mesh} mesh, resolved", line_role))
-    marks.append(Level(paper_impact(runs, kind)[name], "printed", "matched"))
+    marks.append(Level(paper_impact(runs, kind)[name], "printed", "published"))
     fitted = f"step fitted to Type 2, {digits(1e6 * step, 2)} µs"
     marks.append(Level(step, fitted, "dotted", upright=True))
     return tuple(marks)

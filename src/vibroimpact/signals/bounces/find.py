@@ -203,18 +203,18 @@ def _chain(touches: Touches, time: Floats) -> Indices:
     InputError
         If there are fewer than three, or none of them are in a chain.
     """
-    heard = np.flatnonzero(~touches.click)
-    if len(heard) < 3:
-        touches_are = ("no touch is", "one touch is", "two touches are")[len(heard)]
+    clear_touches = np.flatnonzero(~touches.click)
+    if len(clear_touches) < 3:
+        touches_are = ("no touch is", "one touch is", "two touches are")[len(clear_touches)]
         raise InputError(
             f"{touches_are} detected in it, and a restitution needs three: two times of flight"
         )
-    clearness = np.minimum(touches.rise[heard] / touches.threshold, _CLEAR)
-    chain = heard[longest_chain(time[heard], clearness, _JITTER)]
+    clearness = np.minimum(touches.rise[clear_touches] / touches.threshold, _CLEAR)
+    chain = clear_touches[longest_chain(time[clear_touches], clearness, _JITTER)]
     if not len(chain):
         raise InputError(
-            f"it holds no bounces: the times between {len(heard)} touches do not decrease as those "
-            f"of bounces do, by factors of {LOWEST:g} to {HIGHEST:g}"
+            f"it holds no bounces: the times between {len(clear_touches)} touches do not decrease "
+            f"as those of bounces do, by factors of {LOWEST:g} to {HIGHEST:g}"
         )
     return chain
 
@@ -287,23 +287,23 @@ def _chance_doubts(chain: Floats, unexplained: Floats, duration: float) -> tuple
     """
     if len(chain) == 3 and not len(unexplained):
         return ("the series has only three touches: they need not be bounces of one ball",)
-    heard = len(chain) + len(unexplained)
+    touch_count = len(chain) + len(unexplained)
     between = np.count_nonzero((unexplained > chain[0]) & (unexplained < chain[-1]))
     if len(chain) == 3:
         cause = "as any three might; among other touches it takes four"
-    elif _chains_by_chance(chain, heard, duration) > _CHANCE:
+    elif _chains_by_chance(chain, touch_count, duration) > _CHANCE:
         cause = "as some of as many touches at random times would"
     elif _BOUNCES_PER_OTHER * between > len(chain):
         cause = "and too many lie between them"
     else:
         return ()
     raise InputError(
-        f"it holds no series of bounces: of its {heard} touches {len(chain)} at best have "
+        f"it holds no series of bounces: of its {touch_count} touches {len(chain)} at best have "
         f"intervals that shrink as those of bounces, {cause}"
     )
 
 
-def _chains_by_chance(chain: Floats, heard: int, duration: float) -> float:
+def _chains_by_chance(chain: Floats, touch_count: int, duration: float) -> float:
     """Return how many chains as regular as one are expected among touches at random times.
 
     Any three touches begin a chain; each further one must lie where the restitution, with the
@@ -313,5 +313,5 @@ def _chains_by_chance(chain: Floats, heard: int, duration: float) -> float:
     change = np.diff(np.log(interval[1:] / interval[:-1]))
     scatter = float(np.hypot(np.sqrt(np.mean(change**2)), _LEAST_SCATTER))
     # in a span of two standard deviations to either side, by the mean rate of touches
-    hit = -np.expm1(-heard / duration * 4.0 * scatter * interval[2:])
-    return comb(heard, 3) * float(np.prod(hit))
+    hit = -np.expm1(-touch_count / duration * 4.0 * scatter * interval[2:])
+    return comb(touch_count, 3) * float(np.prod(hit))

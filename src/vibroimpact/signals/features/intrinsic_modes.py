@@ -42,11 +42,11 @@ def intrinsic_modes(value: Floats, modes: int = _MODES, siftings: int = _SIFTING
     array, shape (modes, n, samples)
         The modes; zero where there is none.
     """
-    found = np.zeros((modes, *value.shape))
+    found_modes = np.zeros((modes, *value.shape))
     rest = value.copy()
     least_step = _LEVEL * np.abs(value).max(axis=1)
     with_mode = np.arange(len(value))  # the signals whose rest has a mode
-    for mode in found:
+    for mode in found_modes:
         signals = with_mode  # those that are still sifted
         sifted = rest[signals]
         for sifting in range(siftings):
@@ -63,7 +63,7 @@ def intrinsic_modes(value: Floats, modes: int = _MODES, siftings: int = _SIFTING
             sifted -= 0.5 * (cubic_through(sifted, maxima) + cubic_through(sifted, minima))
         mode[signals] = sifted
         rest -= mode
-    return found
+    return found_modes
 
 
 def _extrema(value: Floats, least_step: Floats) -> tuple[Indices, Indices]:

@@ -7,7 +7,7 @@ import numpy as np
 from vibroimpact.arrays import Bools, Floats
 
 
-def noise_left(left: Floats, heard: Bools, slopes: Floats, covariance: Floats) -> Floats:
+def noise_left(residual: Floats, heard: Bools, slopes: Floats, covariance: Floats) -> Floats:
     """Return the noise of each record from what a fit leaves of it.
 
     That tells it better than a short quiet part does. What is left has less energy than the noise
@@ -17,7 +17,7 @@ def noise_left(left: Floats, heard: Bools, slopes: Floats, covariance: Floats) -
 
     Parameters
     ----------
-    left : array, shape (S, samples)
+    residual : array, shape (S, samples)
         What is left of the records.
     heard : array of bool, shape (S, samples)
         The samples that were fitted.
@@ -39,7 +39,7 @@ def noise_left(left: Floats, heard: Bools, slopes: Floats, covariance: Floats) -
     ... )
     1.0
     """
-    of_records = slopes.reshape(*left.shape, -1)
+    of_records = slopes.reshape(*residual.shape, -1)
     followed = np.einsum("snp,pq,snq->s", of_records, covariance, of_records, optimize=True)
     degrees_of_freedom = np.maximum(heard.sum(axis=1) - followed, 1.0)
-    return np.asarray(np.sqrt((left**2 * heard).sum(axis=1) / degrees_of_freedom))
+    return np.asarray(np.sqrt((residual**2 * heard).sum(axis=1) / degrees_of_freedom))

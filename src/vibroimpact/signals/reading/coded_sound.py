@@ -19,7 +19,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.files.reading import FileKind, opened, with_path
 from vibroimpact.quoting import shortened
 from vibroimpact.signals.record import Record, checked_rate
-from vibroimpact.structures.free_memory import check_memory
+from vibroimpact.structures.finite_elements.free_memory import check_memory
 
 if TYPE_CHECKING:
     from av import AudioStream

@@ -22,7 +22,7 @@ from vibroimpact.files.reading import FileKind, beginning, with_path
 from vibroimpact.signals.reading.equal_steps import rate_of
 from vibroimpact.signals.reading.si_units import in_si
 from vibroimpact.signals.record import Record
-from vibroimpact.structures.free_memory import check_memory
+from vibroimpact.structures.finite_elements.free_memory import check_memory
 from vibroimpact.units.reading import to_si
 
 NETCDF = FileKind(

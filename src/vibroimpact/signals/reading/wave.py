@@ -21,7 +21,7 @@ from vibroimpact.quoting import quoted
 from vibroimpact.signals.reading.si_units import in_si
 from vibroimpact.signals.reading.wave_header import FullScale, WaveHeader, read_wave_header
 from vibroimpact.signals.record import Record, checked_rate
-from vibroimpact.structures.free_memory import check_memory
+from vibroimpact.structures.finite_elements.free_memory import check_memory
 
 WAVE = FileKind(
     "a WAV file begins with RIFF, RIFX or RF64", 4_300_000_000, "keep the part with the impacts"

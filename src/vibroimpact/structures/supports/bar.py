@@ -9,8 +9,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.materials import Material
-from vibroimpact.structures.rectangle import Disc
-from vibroimpact.structures.structure import rotation_columns
+from vibroimpact.structures.finite_elements.rectangle import Disc
+from vibroimpact.structures.finite_elements.structure import rotation_columns
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.supports.support import Support, nodes_within
 

@@ -12,9 +12,9 @@ from scipy.sparse import block_diag, coo_array, csr_array, diags_array, kron
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
-from vibroimpact.structures.bed import area_products, elements_within, patch_bed
-from vibroimpact.structures.joints import Joints
-from vibroimpact.structures.structure import Structure, rotation_columns
+from vibroimpact.structures.finite_elements.bed import area_products, elements_within, patch_bed
+from vibroimpact.structures.finite_elements.joints import Joints
+from vibroimpact.structures.finite_elements.structure import Structure, rotation_columns
 
 # of the largest coefficient of a row: what is left of one that follows from others is rounding
 _NONE = 1e-9

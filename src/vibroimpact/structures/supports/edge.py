@@ -9,8 +9,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
-from vibroimpact.structures.element_kinds import PLATE_ORDER
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.finite_elements.element_kinds import PLATE_ORDER
+from vibroimpact.structures.finite_elements.mesh import Mesh
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.supports.support import Support
 

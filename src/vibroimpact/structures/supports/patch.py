@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.errors import InputError
-from vibroimpact.structures.rectangle import Disc
+from vibroimpact.structures.finite_elements.rectangle import Disc
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.supports.support import Support, nodes_within
 

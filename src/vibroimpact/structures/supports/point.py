@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.structures.finite_elements.surface import surface_motion
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.supports.support import Support
-from vibroimpact.structures.surface import surface_motion
 
 
 @dataclass(frozen=True)

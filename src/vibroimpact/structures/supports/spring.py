@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.structures.disc_quadrature import disc_rule
+from vibroimpact.structures.finite_elements.disc_quadrature import disc_rule
+from vibroimpact.structures.finite_elements.surface import surface_motion
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.supports.support import Support
-from vibroimpact.structures.surface import surface_motion
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
-from vibroimpact.structures.rectangle import Disc
-from vibroimpact.structures.structure import Structure
+from vibroimpact.structures.finite_elements.rectangle import Disc
+from vibroimpact.structures.finite_elements.structure import Structure
+from vibroimpact.structures.finite_elements.surface import lower_nodes
 from vibroimpact.structures.supports.constraints import Constraints, HeldStructure
-from vibroimpact.structures.surface import lower_nodes
 
 _RIGID_MOTIONS = 6  # of a free body
 
@@ -72,8 +72,8 @@ def held_by(structure: Structure, supports: Sequence[Support] = ()) -> HeldStruc
     Examples
     --------
     >>> from vibroimpact.materials import find_material
-    >>> from vibroimpact.structures.lattice import box_mesh
-    >>> from vibroimpact.structures.structure import solid_structure
+    >>> from vibroimpact.structures.finite_elements.lattice import box_mesh
+    >>> from vibroimpact.structures.finite_elements.structure import solid_structure
     >>> held_by(
     ...     solid_structure(box_mesh((1.0, 1.0, 1.0), (1, 1, 1)), find_material("rock-paper"))
     ... ).rigid.shape

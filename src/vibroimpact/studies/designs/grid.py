@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import prod
 
-from vibroimpact.studies.design import Asked, Design
-from vibroimpact.studies.plan import Plan
+from vibroimpact.studies.planning.design import Asked, Design
+from vibroimpact.studies.planning.plan import Plan
 
 
 def size(asked: Asked) -> int:

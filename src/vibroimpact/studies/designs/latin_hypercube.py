@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from vibroimpact.studies.design import Asked, Design, generator
-from vibroimpact.studies.plan import Plan
-from vibroimpact.studies.scaled import scaled_columns
+from vibroimpact.studies.planning.design import Asked, Design, generator
+from vibroimpact.studies.planning.plan import Plan
+from vibroimpact.studies.planning.scaled import scaled_columns
 
 
 def size(asked: Asked) -> int:

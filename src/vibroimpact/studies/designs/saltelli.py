@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.errors import InputError
-from vibroimpact.studies.design import Asked, Design, drawn_plan, generator
 from vibroimpact.studies.designs.sobol import check_power_of_two
-from vibroimpact.studies.plan import Plan
+from vibroimpact.studies.planning.design import Asked, Design, drawn_plan, generator
+from vibroimpact.studies.planning.plan import Plan
 
 
 def size(asked: Asked) -> int:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from vibroimpact.errors import InputError
-from vibroimpact.studies.design import MOST_DROPS, Asked, Design, drawn_plan, generator
-from vibroimpact.studies.plan import Plan
+from vibroimpact.studies.planning.design import MOST_DROPS, Asked, Design, drawn_plan, generator
+from vibroimpact.studies.planning.plan import Plan
 
 
 def size(asked: Asked) -> int:

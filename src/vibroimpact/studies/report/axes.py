@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.studies.population import CLASS
-from vibroimpact.studies.study import Study
+from vibroimpact.studies.computation.study import Study
+from vibroimpact.studies.planning.population import CLASS
 
 _WORDS = {
     "contact": "contact law",

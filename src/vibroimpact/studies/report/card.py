@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.cases.limit import limits
-from vibroimpact.studies.drop_variables import SIGNAL
-from vibroimpact.studies.population import CLASS, PLATE, ROCK
+from vibroimpact.cases.limits.limit import limits
+from vibroimpact.studies.computation.study import Study
+from vibroimpact.studies.planning.drop_variables import SIGNAL
+from vibroimpact.studies.planning.population import CLASS, PLATE, ROCK
 from vibroimpact.studies.report.axes import StudyAxis, study_axes
 from vibroimpact.studies.report.labels import drops_text, range_text
 from vibroimpact.studies.report.tables import reasons
-from vibroimpact.studies.study import Study
 from vibroimpact.units.display import digits
 
 CARD = "card.md"
@@ -55,7 +55,7 @@ def data_card(study: Study) -> str:
         "## Sampled keys",
         "Keys of `plate` and `sensors` are drawn once a plate, those of `drop` once a fall, "
         "all others once a rock, each independently."
-        + "".join(f" {words}." for words in _following(study)),
+        + "".join(f" {phrase}." for phrase in _following(study)),
         _table(["key", "meaning", *_names(study)], _drawn(study)),
         *(
             [
@@ -100,9 +100,9 @@ def _names(study: Study) -> list[str]:
 def _classes(study: Study) -> Iterator[Sequence[str]]:
     rocks = _number(study, ROCK)
     for name in _names(study):
-        there = study.labels[CLASS] == name
-        own = len(np.unique(study.labels[ROCK][there]))
-        yield name, str(int(there.sum())), str(own), f"{digits(100.0 * own / rocks, 3)} %"
+        of_class = study.labels[CLASS] == name
+        own = len(np.unique(study.labels[ROCK][of_class]))
+        yield name, str(int(of_class.sum())), str(own), f"{digits(100.0 * own / rocks, 3)} %"
 
 
 def _drawn(study: Study) -> Iterator[Sequence[str]]:
@@ -120,9 +120,9 @@ def _following(study: Study) -> list[str]:
     sweep = study.table["sweep"]
     groups = [
         ("", sweep["over"]),
-        *((f" of {name}", one["over"]) for name, one in sweep["classes"].items()),
+        *((f" of {name}", class_sweep["over"]) for name, class_sweep in sweep["classes"].items()),
     ]
-    found = []
+    sentences = []
     for of_class, over in groups:
         for key, value in over.items():
             if isinstance(value, Mapping) and "of" in value:
@@ -131,8 +131,8 @@ def _following(study: Study) -> list[str]:
                     if value.get("each")
                     else ""
                 )
-                found.append(f"`{key}`{of_class} follows `{value['of']}`{drawn}")
-    return found
+                sentences.append(f"`{key}`{of_class} follows `{value['of']}`{drawn}")
+    return sentences
 
 
 def _signal(study: Study, variable: str) -> Sequence[str]:
@@ -149,10 +149,10 @@ def _signal(study: Study, variable: str) -> Sequence[str]:
 
 def _doubts(study: Study) -> Iterator[str]:
     """Yield what failed, and the limits of the theory that falls exceed."""
-    for number, words in reasons(study):
+    for number, phrase in reasons(study):
         yield (
             f"* {drops_text(number)} failed and "
-            f"{'has no results' if number == 1 else 'have no results, such as'}: {words}."
+            f"{'has no results' if number == 1 else 'have no results, such as'}: {phrase}."
         )
     known: Mapping[str, Any] = limits()
     for limit, drops, *_ in study.doubts:

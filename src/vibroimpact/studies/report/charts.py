@@ -9,6 +9,7 @@ import numpy as np
 
 from vibroimpact.charts.chart import Chart
 from vibroimpact.charts.made import made_charts
+from vibroimpact.studies.computation.study import Study
 from vibroimpact.studies.report.axes import StudyAxis, study_axes
 from vibroimpact.studies.report.curves import MOST_LINES, impact_curves, level_curves
 from vibroimpact.studies.report.drops import drawn_groups
@@ -25,7 +26,6 @@ from vibroimpact.studies.report.sensitivity_chart import sensitivity_chart
 from vibroimpact.studies.report.sensitivity_table import Sensitivity
 from vibroimpact.studies.report.signals import signal_makers
 from vibroimpact.studies.report.slip_chart import slip_chart
-from vibroimpact.studies.study import Study
 
 _Maker = Callable[[], Chart | None]
 

@@ -14,20 +14,21 @@ from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Line, Mark, Points
 from vibroimpact.charts.palette import series
 from vibroimpact.quoting import shortened, visible
-from vibroimpact.studies.drop_variables import PEAK_TABLE
+from vibroimpact.studies.computation.study import Study
+from vibroimpact.studies.planning.drop_variables import PEAK_TABLE
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.drops import MOST_DROPS, drop_texts, results_of
 from vibroimpact.studies.report.labels import keys_told, level_words
 from vibroimpact.studies.report.outputs import Output, drop_numbers, on_grid, on_two_axes
 from vibroimpact.studies.report.panels import HEIGHT, in_rows
 from vibroimpact.studies.report.scales import ascending_order, key_axis, places, result_axis
-from vibroimpact.studies.study import Study
 
 MOST_LINES = 6
 """Maximum number of levels drawn as lines; an axis of more levels is one of a map."""
 
 _MOST_IMPACTS = 5
-_MOST_MARKED, _MOST = 40, 3000  # levels up to which points are marked, and drawn
+_MOST_MARKED = 40
+_MOST = 3000
 
 
 def impact_curves(study: Study, axis: StudyAxis, outputs: list[Output]) -> Chart:
@@ -47,8 +48,10 @@ def impact_curves(study: Study, axis: StudyAxis, outputs: list[Output]) -> Chart
     across = key_axis(axis)
     number = min(_impacts_kept(study), _MOST_IMPACTS)
     table = {
-        one.name: on_grid(study, _column(study, one) or one.name)[order].reshape(len(order), -1)
-        for one in outputs
+        result.name: on_grid(study, _column(study, result) or result.name)[order].reshape(
+            len(order), -1
+        )
+        for result in outputs
     }
     texts = [
         _texts_of_impact(study, outputs, table, order, impact, number)
@@ -96,35 +99,35 @@ def level_curves(
     ]
     texts: list[tuple[str, ...]] = [()] * len(levels)
     if len(axes) == 2 and study.size <= MOST_DROPS:
-        told = np.array(
+        drop_descriptions = np.array(
             drop_texts(study, results_of(study, outputs), drop_numbers(study)), dtype=object
         )
-        told = (
-            told.reshape([len(axis.values) for axis in axes])
+        drop_descriptions = (
+            drop_descriptions.reshape([len(axis.values) for axis in axes])
             if axes[0] is over
-            else told.reshape([len(axis.values) for axis in axes]).T
+            else drop_descriptions.reshape([len(axis.values) for axis in axes]).T
         )
-        texts = [tuple(told[order, level]) for level in levels]
+        texts = [tuple(drop_descriptions[order, level]) for level in levels]
     panels = []
     for output in outputs:
         values = on_two_axes(study, output.name, axes.index(over), axes.index(each))
-        found = zip(levels, names, texts, strict=True)
+        curves = zip(levels, names, texts, strict=True)
         marks = [
-            _curve(over, order, values[order, level], line, name, words)
-            for line, (level, name, words) in enumerate(found)
+            _curve(over, order, values[order, level], line, name, phrase)
+            for line, (level, name, phrase) in enumerate(curves)
         ]
         panels.append(
             Panel(
                 across, result_axis(output, ""), tuple(marks), shortened(visible(output.title), 60)
             )
         )
-    words = (
+    phrase = (
         ""
         if len(axes) == 2
         else " Two of the keys, those with the largest effect on the first result where it is "
         "known; lines are medians over the others."
     )
-    caption = f"A line for each {each.words}.{words} {keys_told([over, each])}"
+    caption = f"A line for each {each.words}.{phrase} {keys_told([over, each])}"
     return Chart(
         "curves", f"Over the {over.words}, for each {each.words}", in_rows(panels), caption, HEIGHT
     )
@@ -153,34 +156,34 @@ def _texts_of_impact(
     """Return what each drop is, with the results of one of its impacts."""
     if len(order) > MOST_DROPS:
         return ()
-    told = {}
+    results = {}
     for output in outputs:
         column = _column(study, output)
         values = table[output.name]
-        told[output.short if column else output.title] = (
+        results[output.short if column else output.title] = (
             output.unit,
             values[:, min(impact, values.shape[1] - 1)],
         )
     numbers = drop_numbers(study)[order]  # of a grid of one axis with several levels
     return drop_texts(
-        study, told, numbers, np.full(len(numbers), impact + 1) if number > 1 else None
+        study, results, numbers, np.full(len(numbers), impact + 1) if number > 1 else None
     )
 
 
 def _impact_words(study: Study, axis: StudyAxis) -> str:
     """Return the caption of the curves of impacts."""
     kept = _impacts_kept(study)
-    words = f"Results over the {axis.words}"
+    phrase = f"Results over the {axis.words}"
     if not kept:
         return (
-            f"{words}; single impacts were not kept; these are the peaks of each drop. "
+            f"{phrase}; single impacts were not kept; these are the peaks of each drop. "
             f"{keys_told([axis])}"
         )
     of_many = f" (the first {_MOST_IMPACTS} of {kept})" if kept > _MOST_IMPACTS else ""
     return (
-        f"{words}, a line an impact{of_many}. {keys_told([axis])}"
+        f"{phrase}, a line an impact{of_many}. {keys_told([axis])}"
         if kept > 1
-        else f"{words}. {keys_told([axis])}"
+        else f"{phrase}. {keys_told([axis])}"
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from vibroimpact.studies.computation.study import Study
 from vibroimpact.studies.report.outputs import Output
 from vibroimpact.studies.report.sensitivity_table import Sensitivity
 from vibroimpact.studies.report.tables import (
@@ -12,7 +13,6 @@ from vibroimpact.studies.report.tables import (
     reasons,
     sensitivity_rows,
 )
-from vibroimpact.studies.study import Study
 
 
 def study_document(

@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.charts.palette import SERIES, series
 from vibroimpact.quoting import shortened, visible
+from vibroimpact.studies.computation.study import Study
+from vibroimpact.studies.computation.study_folder import STUDY
 from vibroimpact.studies.report.axes import StudyAxis, study_axes
 from vibroimpact.studies.report.labels import value_text, with_unit
 from vibroimpact.studies.report.outputs import Output, drop_numbers, read_output, sampled_places
 from vibroimpact.studies.report.scales import names_of, places, sentence
-from vibroimpact.studies.study import Study
-from vibroimpact.studies.study_folder import STUDY
 from vibroimpact.units.display import multiple, text
 
 MOST_DROPS = 1500
@@ -115,24 +115,24 @@ def grouped(
     by = next((label for label, names in named.items() if 1 < len(names) <= SERIES), None)
     if by is None:
         return [Group("a drop", "mark", np.arange(len(numbers)), texts, keys, places_of)]
-    found = []
+    groups = []
     for place, name in enumerate(named[by]):
         chosen = np.flatnonzero(keys[by] == name)
         if not len(chosen):
             continue
         own = {key: column[chosen] for key, column in keys.items()}
         where = {key: column[chosen] for key, column in places_of.items()}
-        found.append(
+        groups.append(
             Group(
                 name,
                 series(place),
                 chosen,
-                tuple(texts[one] for one in chosen.tolist()),
+                tuple(texts[number] for number in chosen.tolist()),
                 own,
                 where,
             )
         )
-    return found
+    return groups
 
 
 def results_of(
@@ -165,7 +165,7 @@ def drop_texts(
         Number of the impact whose results these are, from 1.
     """
     axes = [axis for axis in study_axes(study) if axis.varies]
-    told = [_told(axis, values_at(study, axis, numbers)) for axis in axes[:_MOST_KEYS]]
+    columns = [_told(axis, values_at(study, axis, numbers)) for axis in axes[:_MOST_KEYS]]
     more = [f"and {len(axes) - _MOST_KEYS} keys more"] if len(axes) > _MOST_KEYS else []
     cells = [
         [f"{title}: {text(value, unit)}" if value == value else "" for value in values.tolist()]
@@ -178,16 +178,16 @@ def drop_texts(
         if impacts is None
         else [f", impact {impact}" for impact in impacts.tolist()]
     )
-    found = []
+    texts = []
     for place, (number, head) in enumerate(zip(numbers.tolist(), heads, strict=True)):
         lines = [
             f"drop {number}{head}",
-            *(column[place] for column in told),
+            *(column[place] for column in columns),
             *more,
             *(column[place] for column in cells),
         ]
-        found.append("\n".join([line for line in lines if line] + [run_command(number)]))
-    return tuple(found)
+        texts.append("\n".join([line for line in lines if line] + [run_command(number)]))
+    return tuple(texts)
 
 
 def run_command(number: int) -> str:
@@ -216,8 +216,8 @@ def values_at(study: Study, axis: StudyAxis, numbers: Indices) -> NDArray[Any]:
 
 def _told(axis: StudyAxis, values: NDArray[Any]) -> list[str]:
     """Return the texts of values of a key, each of which often occurs several times."""
-    words = cache(lambda value: f"{shortened(visible(axis.key), 60)}: {value_text(axis, value)}")
-    return [words(value) for value in values.tolist()]
+    phrase = cache(lambda value: f"{shortened(visible(axis.key), 60)}: {value_text(axis, value)}")
+    return [phrase(value) for value in values.tolist()]
 
 
 def _key_label(axis: StudyAxis) -> str:

@@ -9,6 +9,7 @@ from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Bars, Level, Mark
 from vibroimpact.quoting import shortened, visible
+from vibroimpact.studies.computation.study import Study
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.labels import keys_told
 from vibroimpact.studies.report.outputs import Output, independent_drops, independent_values
@@ -21,7 +22,6 @@ from vibroimpact.studies.report.scales import (
     places,
     result_axis,
 )
-from vibroimpact.studies.study import Study
 
 FEWEST = 20
 """Minimum number of drops of a histogram."""

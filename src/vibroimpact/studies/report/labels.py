@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.quoting import shortened, visible
-from vibroimpact.studies.percentiles import PERCENTILES
-from vibroimpact.studies.population import CLASS
+from vibroimpact.studies.planning.population import CLASS
 from vibroimpact.studies.report.axes import StudyAxis
+from vibroimpact.studies.report.percentiles import PERCENTILES
 from vibroimpact.units.display import digits, multiple, text
 
 BAND = f"{PERCENTILES[0]} to {PERCENTILES[-1]} %"

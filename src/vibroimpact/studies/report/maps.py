@@ -7,13 +7,13 @@ import numpy as np
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Map
 from vibroimpact.quoting import shortened, visible
+from vibroimpact.studies.computation.study import Study
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.drops import drop_texts, results_of
 from vibroimpact.studies.report.labels import keys_told
 from vibroimpact.studies.report.outputs import Output, drop_numbers, on_two_axes
 from vibroimpact.studies.report.panels import HEIGHT, in_rows
 from vibroimpact.studies.report.scales import ascending_order, key_axis, places, result_axis
-from vibroimpact.studies.study import Study
 
 _MOST = 200  # maximum number of levels drawn along an axis, close to the resolution of a panel
 _MOST_TOLD = 4096  # maximum number of drops of which each cell tells which one it is
@@ -43,11 +43,15 @@ def maps_chart(
     y = key_axis(up)
     texts: tuple[str, ...] = ()
     if len(axes) == 2 and study.size <= _MOST_TOLD:
-        told = np.array(
+        drop_descriptions = np.array(
             drop_texts(study, results_of(study, outputs), drop_numbers(study)), dtype=object
         )
-        told = told.reshape([len(axis.values) for axis in axes])
-        texts = tuple((told.T if axes[0] is across else told)[np.ix_(rows, columns)].ravel())
+        drop_descriptions = drop_descriptions.reshape([len(axis.values) for axis in axes])
+        texts = tuple(
+            (drop_descriptions.T if axes[0] is across else drop_descriptions)[
+                np.ix_(rows, columns)
+            ].ravel()
+        )
     panels = []
     for output in outputs:
         values = on_two_axes(study, output.name, axes.index(up), axes.index(across))[
@@ -62,14 +66,14 @@ def maps_chart(
             texts=texts,
         )
         panels.append(Panel(x, y, (cells,), shortened(visible(output.title), 60)))
-    words = (
+    phrase = (
         ""
         if len(axes) == 2
         else "Two of the keys, those with the largest effect on the first result where it is "
         "known; colours are medians over the others. "
     )
     caption = (
-        f"{words}Levels are at the middle of their cells; a cell without a colour has no "
+        f"{phrase}Levels are at the middle of their cells; a cell without a colour has no "
         f"value. {keys_told([across, up])}"
     )
     return Chart(

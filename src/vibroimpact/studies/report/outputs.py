@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.outcome import Outcome
-from vibroimpact.studies.drop_variables import OUTCOME, PEAK_TABLE, SENSOR_PEAK
-from vibroimpact.studies.percentiles import Spread, spread_of
-from vibroimpact.studies.study import Study
+from vibroimpact.studies.computation.study import Study
+from vibroimpact.studies.planning.drop_variables import OUTCOME, PEAK_TABLE, SENSOR_PEAK
+from vibroimpact.studies.report.percentiles import Spread, spread_of
 from vibroimpact.units.display import Multiple, multiple
 
-_BODIES, _SENSORS = 6, 3
+_BODIES = 6
+_SENSORS = 3
 """Maximum number of results drawn, of the bodies and of sensors."""
 
 
@@ -73,7 +74,7 @@ def output_names(study: Study) -> list[str]:
 
 def study_outputs(study: Study) -> list[Output]:
     """Return the results with their statistics, the most important first."""
-    found = []
+    outputs = []
     for name in output_names(study):
         title = (
             PEAK_TABLE[name].title
@@ -81,7 +82,7 @@ def study_outputs(study: Study) -> list[Output]:
             else f"Largest reading of {name.removesuffix(SENSOR_PEAK)}"
         )
         short = PEAK_TABLE[name].short if name in PEAK_TABLE else title
-        found.append(
+        outputs.append(
             Output(
                 name,
                 title,
@@ -90,14 +91,14 @@ def study_outputs(study: Study) -> list[Output]:
                 spread_of(independent_values(study, name)),
             )
         )
-    return found
+    return outputs
 
 
 def drawn_outputs(outputs: list[Output]) -> list[Output]:
     """Return the results to be drawn."""
-    worth = [one for one in outputs if one.is_informative]
-    bodies = [one for one in worth if not one.is_sensor_reading]
-    sensors = [one for one in worth if one.is_sensor_reading]
+    worth = [output for output in outputs if output.is_informative]
+    bodies = [output for output in worth if not output.is_sensor_reading]
+    sensors = [output for output in worth if output.is_sensor_reading]
     return [*bodies[:_BODIES], *sensors[:_SENSORS]]
 
 
@@ -143,13 +144,13 @@ def on_two_axes(study: Study, name: str, first: int, second: int) -> Floats:
     values = on_grid(study, name)
     moved = np.moveaxis(values, (first, second), (0, 1))
     flat = moved.reshape(*moved.shape[:2], -1)
-    found = np.full(flat.shape[:2], np.nan)
-    for place in np.ndindex(*found.shape):
+    medians = np.full(flat.shape[:2], np.nan)
+    for place in np.ndindex(*medians.shape):
         here = flat[place]
         here = here[np.isfinite(here)]
         if len(here):
-            found[place] = here[0] if len(here) == 1 else np.median(here)
-    return found
+            medians[place] = here[0] if len(here) == 1 else np.median(here)
+    return medians
 
 
 def sampled_places(study: Study, most: int) -> tuple[slice, ...]:
@@ -165,10 +166,10 @@ def sampled_places(study: Study, most: int) -> tuple[slice, ...]:
     lengths = list(study.dimensions.values())
     steps = [1] * len(lengths)
     while (
-        prod(left := [ceil(length / step) for length, step in zip(lengths, steps, strict=True)])
+        prod(sampled := [ceil(length / step) for length, step in zip(lengths, steps, strict=True)])
         > most
     ):
-        steps[int(np.argmax(left))] += 1
+        steps[int(np.argmax(sampled))] += 1
     return tuple(slice(None, None, step) for step in steps)
 
 
@@ -199,13 +200,13 @@ def read_output(study: Study, name: str, *places: slice) -> Floats:
     """Return a result for slices of the drops, flattened; NaN for failed drops, even if a
     partial result was stored.
     """
-    found = study.values(name, *places)
-    found = found.reshape(-1, *study.shapes[name][len(study.dimensions) :])
-    if found.dtype != np.float64:
-        found = found.astype(np.float64)
+    values = study.values(name, *places)
+    values = values.reshape(-1, *study.shapes[name][len(study.dimensions) :])
+    if values.dtype != np.float64:
+        values = values.astype(np.float64)
     if study.failures:
-        found[study.values(OUTCOME, *places).reshape(-1) == Outcome.FAILED.code] = np.nan
-    return found
+        values[study.values(OUTCOME, *places).reshape(-1) == Outcome.FAILED.code] = np.nan
+    return values
 
 
 def _at_most(most: int, design: str) -> int:

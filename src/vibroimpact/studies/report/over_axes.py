@@ -10,7 +10,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Band, Line, Mark, Points
 from vibroimpact.quoting import shortened, visible
-from vibroimpact.studies.percentiles import PERCENTILES
+from vibroimpact.studies.computation.study import Study
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.drops import MOST_DROPS, Group, values_at
 from vibroimpact.studies.report.labels import BAND, keys_told
@@ -22,14 +22,15 @@ from vibroimpact.studies.report.outputs import (
     sampled_places,
 )
 from vibroimpact.studies.report.panels import HEIGHT, in_rows
+from vibroimpact.studies.report.percentiles import PERCENTILES
 from vibroimpact.studies.report.scales import key_axis, places, result_axis
-from vibroimpact.studies.study import Study
 
 MOST_AXES = 8
 """Maximum number of axes drawn."""
 
 _BANDED = 100_000  # maximum number of drops for the medians
-_BINS, _FULL = 12, 15  # bins of the medians, and the minimum number of drops in one
+_BINS = 12
+_FULL = 15
 _FEWEST = 300  # drops from which on medians are drawn
 _PARTS = np.array([PERCENTILES[0], 50, PERCENTILES[-1]]) / 100.0
 
@@ -100,9 +101,11 @@ def _in_bins(where: Floats, values: Floats, axis: StudyAxis) -> tuple[Floats, Fl
     """Return bin centres along an axis, with equal numbers of drops per bin, or its names
     or few levels, and the band in each bin.
     """
-    found = np.unique(where)
-    if not axis.numeric or len(found) <= _BINS:  # a list of values: a bin would mix them
-        return found, np.array([np.quantile(values[where == place], _PARTS) for place in found])
+    distinct = np.unique(where)
+    if not axis.numeric or len(distinct) <= _BINS:  # a list of values: a bin would mix them
+        return distinct, np.array(
+            [np.quantile(values[where == place], _PARTS) for place in distinct]
+        )
     order = np.argsort(where, kind="stable")
     groups = [
         group for group in np.array_split(order, min(_BINS, len(order) // _FULL)) if len(group)

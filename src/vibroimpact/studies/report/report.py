@@ -16,7 +16,9 @@ from vibroimpact.report.report import (
     Section,
 )
 from vibroimpact.results.csv_files import write_csv
-from vibroimpact.studies.design import find_design
+from vibroimpact.studies.computation.study import Study
+from vibroimpact.studies.computation.study_folder import study_toml
+from vibroimpact.studies.planning.design import find_design
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.card import CARD, data_card
 from vibroimpact.studies.report.charts import study_charts
@@ -41,10 +43,9 @@ from vibroimpact.studies.report.tables import (
     spread_words,
     without_effect,
 )
-from vibroimpact.studies.study import Study
-from vibroimpact.studies.study_folder import study_toml
 
-SPREADS, SENSITIVITY = "percentiles.csv", "sensitivity.csv"
+SPREADS = "percentiles.csv"
+SENSITIVITY = "sensitivity.csv"
 
 
 def report_of(study: Study) -> Report:

@@ -13,6 +13,7 @@ from vibroimpact.arrays import Floats, Indices
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Level, Line, Mark, Points
+from vibroimpact.studies.computation.study import Study
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.drops import Group, drop_texts, grouped
 from vibroimpact.studies.report.outputs import (
@@ -23,7 +24,6 @@ from vibroimpact.studies.report.outputs import (
 )
 from vibroimpact.studies.report.panels import in_rows
 from vibroimpact.studies.report.scales import is_spread_by_factors
-from vibroimpact.studies.study import Study
 from vibroimpact.units.display import fixed
 
 _MOST = 3000  # maximum number of impacts drawn

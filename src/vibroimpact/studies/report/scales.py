@@ -67,9 +67,9 @@ def is_log(output: Output) -> bool:
     return low > 0.0 and high > _FACTORS * low
 
 
-def sentence(words: str) -> str:
+def sentence(phrase: str) -> str:
     """Return words with a capital letter at the beginning."""
-    return words[:1].upper() + words[1:]
+    return phrase[:1].upper() + phrase[1:]
 
 
 def names_of(axis: StudyAxis) -> list[str]:

@@ -11,13 +11,13 @@ from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Bars, Level, Mark
 from vibroimpact.quoting import shortened, visible
+from vibroimpact.studies.computation.study import Study
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.labels import keys_told
 from vibroimpact.studies.report.outputs import Output
 from vibroimpact.studies.report.panels import in_rows
 from vibroimpact.studies.report.scales import sentence
 from vibroimpact.studies.report.sensitivity_table import RANGES, RANKS, SOBOL, Sensitivity
-from vibroimpact.studies.study import Study
 
 _MOST_KEYS = 15
 _LETTERS = 34  # letters of a key beside the bars
@@ -35,7 +35,9 @@ _WORDS = {
 }
 
 
-def sensitivity_chart(study: Study, found: Sensitivity, outputs: list[Output]) -> Chart | None:
+def sensitivity_chart(
+    study: Study, sensitivity: Sensitivity, outputs: list[Output]
+) -> Chart | None:
     """Return the chart of indices, correlations or ranges, one panel per result; None with fewer
     than two keys or no result.
 
@@ -43,43 +45,47 @@ def sensitivity_chart(study: Study, found: Sensitivity, outputs: list[Output]) -
     ----------
     study : Study
         The study.
-    found : Sensitivity
+    sensitivity : Sensitivity
         Its sensitivities.
     outputs : list of Output
         The results to draw.
     """
-    shown = [output for output in outputs if output.name in found.rows]
-    if not shown or len(found.keys) < 2:
+    shown = [output for output in outputs if output.name in sensitivity.rows]
+    if not shown or len(sensitivity.keys) < 2:
         return None
     # sort the keys by their effect summed over all results, the largest at the top
-    effects = np.nansum([found.strength[output.name] for output in shown], axis=0)
+    effects = np.nansum([sensitivity.strength[output.name] for output in shown], axis=0)
     order = np.argsort(effects, kind="stable")[-_MOST_KEYS:]
     axes = {axis.key: axis for axis in study_axes(study)}
-    keys = [axes[found.keys[key]] for key in order]
+    keys = [axes[sensitivity.keys[key]] for key in order]
     names = tuple(shortened(visible(sentence(axis.words)), 60) for axis in keys)
     panels = []
-    common = Axis(*_LABELS[found.way], range=(-1.05, 1.05) if found.way == RANKS else None)
+    common = Axis(
+        *_LABELS[sensitivity.way], range=(-1.05, 1.05) if sensitivity.way == RANKS else None
+    )
     up = Axis(names=tuple(shortened(name, _LETTERS) for name in names))
     for output in shown:
         # ranges may differ widely between results
-        across = Axis(*_LABELS[RANGES]) if found.way == RANGES else common
-        marks = (*_bars(found, output, order, names), Level(0.0, role="main", upright=True))
+        across = Axis(*_LABELS[RANGES]) if sensitivity.way == RANGES else common
+        marks = (*_bars(sensitivity, output, order, names), Level(0.0, role="main", upright=True))
         panels.append(Panel(across, up, marks, shortened(visible(output.short), 40)))
     cut = ""
-    if len(found.keys) > _MOST_KEYS:
-        cut = f" The {_MOST_KEYS} of {len(found.keys)} keys with the largest effects are drawn."
-    caption = f"{_WORDS[found.way]}{cut} {keys_told(keys[::-1])}"
+    if len(sensitivity.keys) > _MOST_KEYS:
+        cut = (
+            f" The {_MOST_KEYS} of {len(sensitivity.keys)} keys with the largest effects are drawn."
+        )
+    caption = f"{_WORDS[sensitivity.way]}{cut} {keys_told(keys[::-1])}"
     return Chart("sensitivity", "Sensitivity", in_rows(panels), caption, 0.7 + 0.28 * len(order))
 
 
 def _bars(
-    found: Sensitivity, output: Output, order: Indices, names: tuple[str, ...]
+    sensitivity: Sensitivity, output: Output, order: Indices, names: tuple[str, ...]
 ) -> tuple[Mark, ...]:
     """Return the bars of one result, one for each of the named keys."""
     lying = partial(Bars, lying=True, texts=names)
-    row = found.rows[output.name]
+    row = sensitivity.rows[output.name]
     places = np.arange(float(len(order)))
-    if found.way == SOBOL:
+    if sensitivity.way == SOBOL:
         sides = (
             (0.18, "first_order", "alone (first order)", "detail"),
             (-0.18, "total", "in all (total)", "pale"),
@@ -96,14 +102,14 @@ def _bars(
             )
             for side, name, label, role in sides
         )
-    if found.way == RANKS:
+    if sensitivity.way == RANKS:
         return (lying(places, np.nan_to_num(row["rank_correlation"][order])),)
     middle = row["at_the_middle"][order]
     moved = [np.nan_to_num(row[name][order] - middle) for name in ("lowest", "highest")]
     # a result that is zero at the middle has no relative range
     low, high = (
-        100.0 * np.divide(one, np.abs(middle), out=np.zeros(len(order)), where=middle != 0.0)
-        for one in moved
+        100.0 * np.divide(bound, np.abs(middle), out=np.zeros(len(order)), where=middle != 0.0)
+        for bound in moved
     )
     return lying(places, high, "up to the highest", "detail"), lying(
         places, low, "down to the lowest", "lower"

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.studies.computation.study import Study
 from vibroimpact.studies.report.axes import StudyAxis, study_axes
 from vibroimpact.studies.report.outputs import (
     Output,
@@ -16,15 +17,16 @@ from vibroimpact.studies.report.outputs import (
     sampled_places,
 )
 from vibroimpact.studies.report.scales import ascending_order
-from vibroimpact.studies.sensitivity import (
+from vibroimpact.studies.report.sensitivity import (
     MOST_LEFT_OUT,
     one_at_a_time,
     rank_correlations,
     sobol_indices,
 )
-from vibroimpact.studies.study import Study
 
-SOBOL, RANKS, RANGES = "sobol", "ranks", "ranges"
+SOBOL = "sobol"
+RANKS = "ranks"
+RANGES = "ranges"
 """The methods: Sobol indices, rank correlations, one-at-a-time ranges."""
 
 _POINTS = 131_072  # maximum number of points of a block for the indices, a power of two
@@ -62,7 +64,7 @@ def sensitivity_of(study: Study, outputs: list[Output]) -> Sensitivity | None:
     """
     axes = study_axes(study)
     varying = [axis for axis in axes if axis.varies]
-    outputs = [one for one in outputs if one.spread.varies]
+    outputs = [output for output in outputs if output.spread.varies]
     if study.design == "zip" or not varying or not outputs:
         return None
     if study.design == "saltelli":
@@ -76,15 +78,15 @@ def informative_sensitivity(study: Study, outputs: list[Output]) -> Sensitivity 
     """Return the sensitivity of the results that describe the response, as
     `sensitivity.csv` has it; None as `sensitivity_of`.
     """
-    return sensitivity_of(study, [one for one in outputs if one.is_informative])
+    return sensitivity_of(study, [output for output in outputs if output.is_informative])
 
 
-def strongest(found: Sensitivity, output: str) -> str | None:
+def strongest(sensitivity: Sensitivity, output: str) -> str | None:
     """Return the key with the largest effect on a result; None if it is undetermined."""
-    strength = found.strength.get(output)
+    strength = sensitivity.strength.get(output)
     if strength is None or not np.isfinite(strength).any():
         return None
-    return found.keys[int(np.nanargmax(strength))]
+    return sensitivity.keys[int(np.nanargmax(strength))]
 
 
 def _indices(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensitivity | None:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from vibroimpact.report.report import Block, Column, Note, Section, Table
-from vibroimpact.studies.percentiles import PERCENTILES
+from vibroimpact.studies.computation.study import Study
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.labels import percent, with_unit
 from vibroimpact.studies.report.outputs import Output
+from vibroimpact.studies.report.percentiles import PERCENTILES
 from vibroimpact.studies.report.sensitivity_table import (
     RANKS,
     SOBOL,
@@ -15,10 +16,10 @@ from vibroimpact.studies.report.sensitivity_table import (
     strongest,
 )
 from vibroimpact.studies.report.tables import reason_sentences
-from vibroimpact.studies.study import Study
 from vibroimpact.units.display import digits
 
-_RESULTS, _REASONS = 5, 3
+_RESULTS = 5
+_REASONS = 3
 _PERCENTILES = (5, 50, 95)  # those shown
 _NARROW = 70  # width of a terminal below which sensitivities are not shown
 
@@ -75,14 +76,14 @@ def _strongest_keys(
         return []
     others = [output for output in outputs if not output.is_informative]
     sensitivities = [
-        found for found in (sensitivity, sensitivity_of(study, others)) if found is not None
+        known for known in (sensitivity, sensitivity_of(study, others)) if known is not None
     ]
     if not sensitivities:
         return []
     has_names = any(not axis.numeric for axis in study_axes(study))
     of_numbers = ", of numeric keys," if sensitivities[0].way == RANKS and has_names else ""
     cells = [
-        "".join(_strongest_key(found, output.name) for found in sensitivities) for output in outputs
+        "".join(_strongest_key(known, output.name) for known in sensitivities) for output in outputs
     ]
     return [Column(f"most sensitive{of_numbers} to", cells, is_text=True, least_width=_NARROW)]
 

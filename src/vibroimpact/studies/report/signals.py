@@ -17,10 +17,10 @@ from vibroimpact.charts.marks import Band, Line
 from vibroimpact.charts.palette import series
 from vibroimpact.files.plain_names import plain_names
 from vibroimpact.quoting import shortened, visible
-from vibroimpact.studies.drop_variables import SIGNAL, SIGNAL_START
+from vibroimpact.studies.computation.study import Study
+from vibroimpact.studies.planning.drop_variables import SIGNAL, SIGNAL_START
 from vibroimpact.studies.report.labels import BAND, drops_text
 from vibroimpact.studies.report.outputs import drop_numbers, sampled_output, sampled_places
-from vibroimpact.studies.study import Study
 from vibroimpact.units.display import text
 
 MOST = 2
@@ -30,7 +30,8 @@ _BYTES = 30e6  # maximum memory of the evaluated signals
 _BEFORE = 0.05  # part of what is shown that lies before first touch
 _COLUMNS = 1200  # time intervals of the band
 # samples shown by the first view, and by each further one how many times more
-_CLOSE, _FARTHER = 250, 8
+_CLOSE = 250
+_FARTHER = 8
 _FEW = 5
 _FINEST = 2500  # columns of a line that is drawn
 

@@ -9,17 +9,17 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.cases.oblique import friction_law_of
-from vibroimpact.cases.rigid_problem import rigid_problem
+from vibroimpact.cases.rigid.oblique import friction_law_of
+from vibroimpact.cases.rigid.rigid_problem import rigid_problem
 from vibroimpact.charts.chart import Chart
 from vibroimpact.charts.marks import Points
 from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.runs.slip_map import moduli_ratio, slip_map, slips
+from vibroimpact.studies.computation.study import Study
+from vibroimpact.studies.planning.swept_keys import case_at
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.drops import MOST_DROPS, drop_texts, grouped, values_at
 from vibroimpact.studies.report.outputs import drop_numbers, sampled_output, sampled_places
-from vibroimpact.studies.study import Study
-from vibroimpact.studies.swept_keys import case_at
 
 _COLUMNS = (*tuple(OBLIQUE_IMPACT_COLUMNS)[2:12], "approach_speed_m_s", "restitution_achieved")
 _OF_THE_CONTACT = (

@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.cases.limit import limits
+from vibroimpact.cases.limits.limit import limits
 from vibroimpact.report.report import Column, Table, table_of
-from vibroimpact.studies.percentiles import PERCENTILES
+from vibroimpact.studies.computation.study import Study, StudyDoubt
+from vibroimpact.studies.planning.unit_slips import study_slips
 from vibroimpact.studies.report.axes import StudyAxis, study_axes
 from vibroimpact.studies.report.labels import drops_text, percent, range_text, value_text
 from vibroimpact.studies.report.outputs import Output
+from vibroimpact.studies.report.percentiles import PERCENTILES
 from vibroimpact.studies.report.sensitivity_table import RANGES, RANKS, SOBOL, Sensitivity
-from vibroimpact.studies.study import Study, StudyDoubt
-from vibroimpact.studies.unit_slips import study_slips
 from vibroimpact.units.display import MISSING, digits, fixed
 
 PERCENTILE_COLUMNS = [
@@ -37,7 +37,8 @@ _WORST_KEYS = 4  # keys shown of the worst drop; all are in drops.csv
 
 _COUNT = "number_of_impacts"
 _COUNTS = ("points", "drops")  # columns of whole numbers in sensitivity.csv
-_FAILURES, _REASONS = 10, 5
+_FAILURES = 10
+_REASONS = 5
 _MOST_KEYS = 20
 _IDLE = set(f"0. ±{MISSING}")
 _NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?")

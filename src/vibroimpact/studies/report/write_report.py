@@ -6,9 +6,9 @@ from functools import partial
 
 from vibroimpact.report.page import replace_report_files
 from vibroimpact.report.save_report import write_report
+from vibroimpact.studies.computation.study import Study
 from vibroimpact.studies.report.card import CARD
 from vibroimpact.studies.report.report import SENSITIVITY
-from vibroimpact.studies.study import Study
 
 
 def write_study_report(study: Study) -> None:

@@ -136,7 +136,7 @@ def _chart(measured: MeasuredModes) -> Chart:
     )
     rows = []
     for response, value in zip(measured.responses[:MOST], measured.value, strict=False):
-        lines, shown = magnitude_lines(measured.frequency, (value,), (("measured", "main"),))
+        lines, shown = magnitude_lines(measured.frequency, (value,), (("measured", "measured"),))
         scale = Axis("Magnitude", response.unit, log=True, range=shown)
         marks: tuple[Mark, ...] = (*lines, Rug(places, "measured modes"))
         rows.append((Panel(axis, scale, marks, shortened(visible(response.name), 40)),))

@@ -23,14 +23,14 @@ from vibroimpact.test_analysis.charts import (
 )
 from vibroimpact.test_analysis.responses.result import ResponseCorrelation
 
-_LOOKS = (("measured", "main"), ("simulated", "fit"))
+_LOOKS = (("measured", "measured"), ("simulated", "fit"))
 """Names and roles of the lines."""
 
 WHAT_FRAC_IS_OF = "the measured frequency responses"
 """Of what the frequency response assurance criterion is."""
 
 
-def response_charts(found: ResponseCorrelation) -> list[Chart]:
+def response_charts(correlation: ResponseCorrelation) -> list[Chart]:
     """Return the charts `responses`, `frac` and, if a damping was measured, `damping`.
 
     Examples
@@ -61,51 +61,55 @@ def response_charts(found: ResponseCorrelation) -> list[Chart]:
     ['responses', 'frac', 'damping']
     """
     makers = {
-        "responses": partial(_responses, found),
-        "frac": partial(frac_chart, found, WHAT_FRAC_IS_OF),
+        "responses": partial(_responses, correlation),
+        "frac": partial(frac_chart, correlation, WHAT_FRAC_IS_OF),
     }
-    if any(pair.damping_measured for pair in found.modes):
-        makers["damping"] = partial(damping_chart, found, "the measured frequency responses")
+    if any(pair.damping_measured for pair in correlation.modes):
+        makers["damping"] = partial(damping_chart, correlation, "the measured frequency responses")
     return made_charts(makers)
 
 
-def _responses(found: ResponseCorrelation) -> Chart:
-    axis = Axis("Frequency", "Hz", range=found.band)
-    computed = np.array([pair.frequency for pair in found.modes if pair.number is not None])
+def _responses(correlation: ResponseCorrelation) -> Chart:
+    axis = Axis("Frequency", "Hz", range=correlation.band)
+    computed = np.array([pair.frequency for pair in correlation.modes if pair.number is not None])
     turns = Axis("Phase", "°", range=(-190.0, 190.0))
     rows: list[tuple[Panel, ...]] = []
-    for number, sensor in enumerate(found.sensors[:MOST]):
-        both = (found.measured_response[number], found.simulated_response[number])
-        magnitudes, shown = magnitude_lines(found.frequency, both)
-        scale = Axis("Magnitude", found.units[number], log=True, range=shown)
+    for number, sensor in enumerate(correlation.sensors[:MOST]):
+        both = (correlation.measured_response[number], correlation.simulated_response[number])
+        magnitudes, shown = magnitude_lines(correlation.frequency, both)
+        scale = Axis("Magnitude", correlation.units[number], log=True, range=shown)
         phases = [
-            Line(*_phase(found.frequency, one), name, role)
-            for one, (name, role) in zip(both, _LOOKS, strict=True)
+            Line(*_phase(correlation.frequency, response), name, role)
+            for response, (name, role) in zip(both, _LOOKS, strict=True)
         ]
-        title = f"{shortened(visible(sensor.name), 40)}: FRAC {found.frac[number]:.3f}"
+        title = f"{shortened(visible(sensor.name), 40)}: FRAC {correlation.frac[number]:.3f}"
         rows.append((Panel(axis, scale, (*magnitudes, Rug(computed, "modes of the case")), title),))
         rows.append((Panel(axis, turns, tuple(phases), "Phase"),))
-        if found.coherence is not None and not np.isnan(found.coherence[number]).any():
+        if correlation.coherence is not None and not np.isnan(correlation.coherence[number]).any():
             level = Axis("Coherence", range=(0.0, 1.02))
             rows.append(
                 (
                     Panel(
                         axis,
                         level,
-                        (Line(found.frequency, found.coherence[number], role="detail"),),
+                        (
+                            Line(
+                                correlation.frequency, correlation.coherence[number], role="detail"
+                            ),
+                        ),
                         "Coherence",
                     ),
                 )
             )
-    place = visible(found.reference)
+    place = visible(correlation.reference)
     of = (
         f"of the motion at {place} to forces at the sensors"
-        if found.reciprocal
+        if correlation.reciprocal
         else f"to a force at {place}"
     )
     caption = (
         f"Measured frequency responses {of}, and those of the case. Ticks mark the modes of "
-        f"the case.{those_drawn(len(found.sensors))}"
+        f"the case.{those_drawn(len(correlation.sensors))}"
     )
     return Chart("responses", "Frequency responses", tuple(rows), caption)
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.arrays import Bools, Complex, Floats
-from vibroimpact.cases.schema import CaseTable
+from vibroimpact.cases.sections.schema import CaseTable
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 from vibroimpact.signals.decay.responses import common_lines, modes_in_responses

@@ -42,7 +42,7 @@ _NAMED = 4
 
 
 def doubts_about(
-    found: ResponseCorrelation,
+    correlation: ResponseCorrelation,
     problem: Problem,
     match: Matched,
     differences: SharedDifferences,
@@ -52,7 +52,7 @@ def doubts_about(
 
     Parameters
     ----------
-    found : ResponseCorrelation
+    correlation : ResponseCorrelation
         The correlation.
     problem : Problem
         The problem of the case.
@@ -75,27 +75,30 @@ def doubts_about(
             "the hammer was at the sensors, and the motion was measured at "
             f"{quoted(match.reference)}: taken as equal, by reciprocity"
         )
-    for sensor, polarity in zip(found.sensors, found.polarity, strict=True):
+    for sensor, polarity in zip(correlation.sensors, correlation.polarity, strict=True):
         if polarity < 0.0:
             yield f"the response {quoted(sensor.name)} has inverted polarity; its sign is changed"
-    yield from doubts_of_differences(differences, found.frac, found.scaled_frac, found.damped_frac)
-    for row, sensor in enumerate(found.sensors):
-        tolerance = _GAIN if found.damped_frac[row] > _ALIKE else _LARGE_GAIN
+    yield from doubts_of_differences(
+        differences, correlation.frac, correlation.scaled_frac, correlation.damped_frac
+    )
+    for row, sensor in enumerate(correlation.sensors):
+        tolerance = _GAIN if correlation.damped_frac[row] > _ALIKE else _LARGE_GAIN
         if abs(scale[row] - 1.0) > tolerance:
             yield (
                 f"the response {quoted(sensor.name)} has {scale[row]:.3g} times the simulated "
                 "magnitude: check the sensitivity, and mass and damping of the plate"
             )
-    yield from _of_coherence(found)
+    yield from _of_coherence(correlation)
     yield from doubts_of_resolution(
-        [pair.measured for pair in found.modes if pair.measured is not None], found.frequency
+        [pair.measured for pair in correlation.modes if pair.measured is not None],
+        correlation.frequency,
     )
     assert problem.plate.modes is not None
     highest = float(problem.plate.modes.frequencies[-1])
-    if highest < found.band[1]:
+    if highest < correlation.band[1]:
         yield (
             f"the modes of the case end at {highest:.5g} Hz, and the band at "
-            f"{found.band[1]:.5g} Hz: ask for more modes"
+            f"{correlation.band[1]:.5g} Hz: ask for more modes"
         )
 
 
@@ -114,19 +117,23 @@ def _few(names: Sequence[str]) -> str:
     return f"{', '.join(names[:_NAMED])}{' and more' if len(names) > _NAMED else ''}"
 
 
-def _of_coherence(found: ResponseCorrelation) -> Iterator[str]:
+def _of_coherence(correlation: ResponseCorrelation) -> Iterator[str]:
     """Yield where a response is not coherent with the force."""
-    if found.coherence is None:
+    if correlation.coherence is None:
         return
     mode_frequencies = [
-        pair.measured.frequency.value for pair in found.modes if pair.measured is not None
+        pair.measured.frequency.value for pair in correlation.modes if pair.measured is not None
     ]
     mode_lines = [
-        int(np.argmin(np.abs(found.frequency - frequency))) for frequency in mode_frequencies
+        int(np.argmin(np.abs(correlation.frequency - frequency))) for frequency in mode_frequencies
     ]
-    for sensor, coherence in zip(found.sensors, found.coherence, strict=True):
+    for sensor, coherence in zip(correlation.sensors, correlation.coherence, strict=True):
         where = []
-        low = [f"{found.frequency[line]:.4g}" for line in mode_lines if coherence[line] < COHERENT]
+        low = [
+            f"{correlation.frequency[line]:.4g}"
+            for line in mode_lines
+            if coherence[line] < COHERENT
+        ]
         if low:
             where.append(f"at the mode{'s' if len(low) > 1 else ''} of {_few(low)} Hz")
         fraction = float((coherence < COHERENT).mean())

@@ -117,7 +117,7 @@ def _summary(correlation: ResponseCorrelation) -> dict[str, Any]:
         "band_Hz": list(correlation.band),
         "reference": correlation.reference,
         "reciprocal": correlation.reciprocal,
-        "octaves_Hz": [list(one) for one in correlation.octaves],
+        "octaves_Hz": [list(octave) for octave in correlation.octaves],
         "responses": {
             sensor.name: {
                 "unit": correlation.units[number],

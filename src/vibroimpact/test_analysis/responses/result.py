@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Complex, Floats
-from vibroimpact.cases.schema import CaseTable
+from vibroimpact.cases.sections.schema import CaseTable
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.report.reported import Reported
 from vibroimpact.test_analysis.mode_pairs import ModePair

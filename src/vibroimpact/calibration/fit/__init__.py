@@ -1,0 +1,1 @@
+"""The fit of a parameter to observations, impact by impact, with its uncertainty."""

@@ -1,0 +1,140 @@
+"""A measured record and its simulation with the values found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.calibration.fit.matching import Tunable
+from vibroimpact.calibration.observed.flights import VacuumFlights
+from vibroimpact.calibration.observed.observations import Observations
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.simulate import simulate
+
+_MOST_CONTACTS = 20
+"""Number of contacts that are shown."""
+
+_POINTS = 801
+"""Points of a simulated contact."""
+
+
+@dataclass(frozen=True)
+class Overlay:
+    """A piece of a record and its simulation.
+
+    Parameters
+    ----------
+    label : str
+        Name, such as "impact 1, line 305".
+    quantity : "force" or "position"
+        The contact force [N], or the height of the sphere's centre above the plate [m].
+    measured, simulated : tuple of two arrays
+        Times [s], relative to the simulated first touch for a force and those of the record for a
+        position, and values.
+    touch : float
+        Time of the simulated first touch in the record of a force [s].
+    flights : tuple of (float, float)
+        Begin and end of each simulated flight in the record of a position [s].
+    """
+
+    label: str
+    quantity: Literal["force", "position"]
+    measured: tuple[Floats, Floats]
+    simulated: tuple[Floats, Floats]
+    touch: float = 0.0
+    flights: tuple[tuple[float, float], ...] = ()
+
+
+def overlays(
+    tunable: Tunable, seen: Observations, values: Floats, outcomes: Mapping[str, Floats]
+) -> tuple[Overlay, ...]:
+    """Return the measured record with its simulation.
+
+    There is one overlay for each of the first contacts of a force, one in all for a position.
+
+    Parameters
+    ----------
+    tunable : Tunable
+        The tuned parameter.
+    seen : Observations
+        The measurement; the result is empty if it is not a record, or a force record and the law
+        has no force.
+    values : array, shape (n,)
+        The value found for each impact.
+    outcomes : mapping of str to array, shape (n,)
+        Quantities of the impacts with these values.
+    """
+    if seen.record is None:
+        return ()
+    if seen.record.quantity == "position":
+        return (_position(tunable.drop(values), seen, outcomes),)
+    if not np.all(outcomes["max_force"] > 0.0):
+        return ()  # an impulsive law has no force
+    drop = tunable.drop(values)
+    contacts = []
+    for impact, (time, force) in enumerate(seen.record.pieces[:_MOST_CONTACTS]):
+        simulated_time, simulated_force = _contact(drop, impact, float(seen.speeds[impact]))
+        # the centroid of a pulse is better determined than its ends
+        touch = _centroid(time, force) - _centroid(simulated_time, simulated_force)
+        contacts.append(
+            Overlay(
+                seen.labels[impact],
+                "force",
+                measured=(time - touch, force),
+                simulated=(simulated_time, simulated_force),
+                touch=touch,
+            )
+        )
+    return tuple(contacts)
+
+
+def _contact(drop: Problem, impact: int, speed: float) -> tuple[Floats, Floats]:
+    """Return times since first touch [s] and the force [N] of a single impact."""
+    law = drop.laws[min(impact, len(drop.laws) - 1)]
+    single_impact = replace(
+        drop,
+        laws=(law,),
+        height=None,
+        speed=speed,
+        impacts=1,
+        duration=None,
+        rest_speed=0.0,
+        sensors=(),
+    )
+    response = simulate(single_impact)
+    time = np.linspace(0.0, float(response.impacts["duration_s"].flat[0]), _POINTS)
+    return time, response.at(time)["force_N"]
+
+
+def _centroid(time: Floats, force: Floats) -> float:
+    """Return the time of the centroid of a pulse [s]."""
+    push = np.maximum(force, 0.0)
+    return float(np.trapezoid(time * push, time) / np.trapezoid(push, time))
+
+
+def _position(drop: Problem, seen: Observations, outcomes: Mapping[str, Floats]) -> Overlay:
+    """Return the record with the flight after each simulated impact.
+
+    Each flight begins when it does in the record: one after the other, they would show errors of
+    their durations that add up.
+    """
+    assert seen.record is not None
+    radius = float(drop.sphere.contact_offset)
+    gravity = float(drop.gravity)
+    flight_model = seen.flights or VacuumFlights(gravity)
+    time, position = seen.record.pieces[0]
+    simulated = np.full_like(time, np.nan)
+    flights = []
+    for rebound_height, begin in zip(outcomes["rebound_height"], seen.record.begins, strict=True):
+        # the rebound height is that in a vacuum
+        speed = np.sqrt(2.0 * gravity * max(float(rebound_height) - radius, 0.0))
+        flight = flight_model.flight(np.asarray(speed))
+        inside = (time >= begin) & (time <= begin + flight.duration)
+        depth, _ = flight_model.depth_at(time[inside] - begin - flight.rise_time)
+        simulated[inside] = radius + flight.height - depth
+        flights.append((begin, begin + float(flight.duration)))
+    return Overlay("", "position", (time, position), (time, simulated), flights=tuple(flights))

@@ -1,0 +1,1 @@
+"""Observations from records and tables: of force, position and bounces."""

@@ -1,0 +1,1 @@
+"""What a limit of the theory is, and the conditions of a drop that it is held to."""

@@ -1,0 +1,1 @@
+"""The sphere, the plate, the motion and the contact of a case as a problem of rigid bodies."""

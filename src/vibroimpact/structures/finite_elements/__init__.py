@@ -1,0 +1,1 @@
+"""Meshes of bodies, and the stiffness and mass of their finite elements."""

@@ -1,0 +1,1 @@
+"""What a study asks for: its section of the case, axes, populations, design and outputs."""
