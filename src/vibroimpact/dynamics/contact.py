@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.arrays import Bools, Drops, Floats, Integers
+from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.contact.law import CompliantLaw
 
 RELEASED, CAPTURED, FAILED, SETTLED, RIDING = range(5)
@@ -43,21 +43,6 @@ class Piece:
     """The law with its memory in this part, of all B drops of the contact."""
 
 
-@dataclass(frozen=True)
-class NormalRecords:
-    """The normal motions of B contacts, as the core writes them.
-
-    `steps`: of a smooth part. `shapes`: numbers that tell the parts of each (B,), 0 of one that has
-    to be followed. `begins`: where each begins (B,) in `motions`, with six rows of points; see
-    `core.normal_records`.
-    """
-
-    steps: int
-    shapes: Integers
-    begins: Integers
-    motions: Floats
-
-
 @dataclass
 class Contact:
     """One contact of B drops, from first touch to release; arrays are (B,).
@@ -65,8 +50,7 @@ class Contact:
     `outcome`: RELEASED, CAPTURED (the energy does not suffice to leave the indentation), FAILED,
     SETTLED or RIDING. `final_delta`, `final_rate`: indentation [m] and its rate [m/s] at the end.
     `dissipated`, `plastic`: energy lost in damping and in plastic deformation [J]. `stored`: energy
-    left in the contact [J]. `law`: the law with its memory of this contact. `normals`: its normal
-    motion, where that drives friction, until it is followed.
+    left in the contact [J]. `law`: the law with its memory of this contact.
     """
 
     pieces: Sequence[Piece]
@@ -80,7 +64,6 @@ class Contact:
     plastic: Floats
     stored: Floats
     law: CompliantLaw
-    normals: NormalRecords | None = None
 
     def of(self, index: int) -> Contact:
         """Return the contact of one drop."""
@@ -99,6 +82,4 @@ class Contact:
             for name, value in vars(self).items()
             if isinstance(value, np.ndarray)
         }
-        return replace(
-            self, pieces=pieces, law=self.law.take(np.array([index])), normals=None, **arrays
-        )
+        return replace(self, pieces=pieces, law=self.law.take(np.array([index])), **arrays)

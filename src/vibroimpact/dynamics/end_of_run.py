@@ -7,6 +7,7 @@ import numpy as np
 from vibroimpact.arrays import Drops, Floats
 from vibroimpact.dynamics.energy import close_ledger, ledger_holds
 from vibroimpact.dynamics.oblique.oblique_motion import ObliqueMotion
+from vibroimpact.dynamics.oblique.state import friction_parts
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.rest import Rest
@@ -102,5 +103,5 @@ def _ledger(
         entries[f"{fluid.key}_J"] = run.to_fluid + run.liquid_at_start - liquid
     energy = close_ledger(run.energy_in, added, entries)
     if run.oblique is not None:
-        energy |= run.oblique.friction_parts()
+        energy |= friction_parts(run.oblique.lost, run.oblique.microslip)
     return energy, added

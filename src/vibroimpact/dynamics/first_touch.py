@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.rigid.solve_contact import solver_for
 from vibroimpact.dynamics.run_state import RunState
 
 
@@ -31,7 +30,7 @@ def first_touch(problem: Problem) -> float:
     >>> round(first_touch(drop), 6)  # sqrt(2 h/g)
     0.451601
     """
-    run = RunState(problem, solver_for(problem))
+    run = RunState(problem)
     drops = np.zeros(1, dtype=np.intp)
     times, _, _ = run.bodies.next_touch(drops, run.flights(drops), run.law(drops))
     return float(times[0])

@@ -546,17 +546,12 @@ class Problem:
         return self.same_spot and isinstance(law, CompliantLaw) and law.lasting
 
     @property
-    def is_rigid_and_normal(self) -> bool:
-        """Whether rigid bodies meet along the normal under a law with a force, in a vacuum, on a
-        plate whose supports have no motion.
+    def is_rigid_and_still(self) -> bool:
+        """Whether rigid bodies meet in a vacuum, on a plate that does not move.
+
+        The core follows such drops from start to end.
         """
-        return (
-            isinstance(self.laws[0], CompliantLaw)
-            and not self.vibrates
-            and self.oblique is None
-            and self.motion is None
-            and self.fluid is None
-        )
+        return not self.vibrates and self.motion is None and self.fluid is None
 
     def law_of(self, impact: int) -> ContactLaw:
         """Return the law of an impact, counted from 0; the last one goes on."""

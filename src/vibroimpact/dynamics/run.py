@@ -17,16 +17,15 @@ from vibroimpact.dynamics.oblique.oblique_motion import ObliqueMotion
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.progress import fraction_done
-from vibroimpact.dynamics.rigid.solve_contact import SolvesContact
 from vibroimpact.dynamics.run_state import RunState
 from vibroimpact.dynamics.stop_rules import first_stops, stop_rules
 
 
 class Run(RunState):
-    """The run of B drops. `solve_contact`: solver of contacts of rigid bodies."""
+    """The run of B drops that the core does not follow from start to end."""
 
-    def __init__(self, problem: Problem, solve_contact: SolvesContact) -> None:
-        super().__init__(problem, solve_contact)
+    def __init__(self, problem: Problem) -> None:
+        super().__init__(problem)
         self.stop_rules = stop_rules(self)
 
     def fraction_done(self) -> float:

@@ -20,18 +20,15 @@ from vibroimpact.dynamics.oblique.oblique_motion import ObliqueMotion
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.rigid.rigid_bodies import RigidBodies
-from vibroimpact.dynamics.rigid.solve_contact import SolvesContact
 from vibroimpact.dynamics.run_bodies import Bodies
 
 _APART = 4e-15  # of the amplitude of a shaken plate: the rounding error of its place
 
 
 class RunState:
-    """State of a batch of B drops between impacts; arrays are (B,). `solve_contact`:
-    solver of contacts of rigid bodies.
-    """
+    """State of a batch of B drops between impacts; arrays are (B,)."""
 
-    def __init__(self, problem: Problem, solve_contact: SolvesContact) -> None:
+    def __init__(self, problem: Problem) -> None:
         self.problem = problem
         self.size = int(np.prod(problem.shape))
         self.mass = self.spread(problem.sphere.mass)
@@ -64,7 +61,7 @@ class RunState:
             self.rest_speed = self.default_rest_speed()
         else:
             self.rest_speed = self.spread(problem.rest_speed)
-        self.bodies = self._bodies(solve_contact)
+        self.bodies = self._bodies()
         self.memories = {
             name: self.spread(value) for name, value in problem.laws[0].memories().items()
         }
@@ -90,10 +87,15 @@ class RunState:
             return None
         oblique = problem.oblique.with_weight(problem.net_weight)
         return ObliqueMotion(
-            oblique, self.mass, self.radius, self.spread(problem.sphere_inertia), problem.motion
+            oblique,
+            self.mass,
+            self.radius,
+            self.spread(problem.sphere_inertia),
+            problem.motion,
+            problem.tolerance,
         )
 
-    def _bodies(self, solve_contact: SolvesContact) -> Bodies:
+    def _bodies(self) -> Bodies:
         """Return the bodies of the problem."""
         # a drop of rigid bodies does not load what vibrates
         if self.problem.vibrates:
@@ -103,8 +105,8 @@ class RunState:
         if self.problem.shaken:
             from vibroimpact.dynamics.shaken.shaken_bodies import ShakenBodies
 
-            return ShakenBodies(self.problem, self.mass, self.gravity, solve_contact)
-        return RigidBodies(self.size, solve_contact)
+            return ShakenBodies(self.problem, self.mass, self.gravity)
+        return RigidBodies(self.size, self.problem.tolerance)
 
     def _further_columns(self) -> list[str]:
         """Return the columns that the impact table has beside those of the bodies."""

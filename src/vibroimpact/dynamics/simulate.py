@@ -13,7 +13,6 @@ from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.packed_list import PackedList
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.response import Response
-from vibroimpact.dynamics.rigid.solve_contact import solver_for
 from vibroimpact.dynamics.run import Run
 from vibroimpact.dynamics.shaken.statement import PlateMotion
 from vibroimpact.errors import ComputationError, InputError
@@ -69,8 +68,8 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     stated = problem.to_problem()
     # Newton iterates may overflow; results that are not finite are detected and retried
     with np.errstate(all="ignore"):
-        if stated.is_rigid_and_normal:
-            # a law without a force does not load the compiler
+        if stated.is_rigid_and_still:
+            # a drop of bodies that vibrate does not load it
             from vibroimpact.dynamics.rigid.drops import follow
 
             response = follow(stated, progress, keeps_bounces=True)
@@ -85,7 +84,7 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
 
 def _advanced(problem: Problem, progress: Callable[[float], None] | None) -> Response:
     """Return the response of drops that the core does not follow from start to end."""
-    run = Run(problem, solver_for(problem))
+    run = Run(problem)
     bounces: PackedList[Bounce] | list[Bounce] = []
     if problem.shape == () and not problem.vibrates:
         bounces = PackedList[Bounce](PlateMotion)

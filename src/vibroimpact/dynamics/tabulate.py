@@ -13,12 +13,10 @@ from vibroimpact.dynamics.end_of_run import response_of
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.rest import Rest
-from vibroimpact.dynamics.rigid.solve_contact import solver_for
 from vibroimpact.dynamics.run import Run
 from vibroimpact.errors import InputError
 
-# drops run together, for the cache; oblique ones take more calls, each of some drops
-_BLOCK, _OBLIQUE_BLOCK = 2000, 16000
+_BLOCK = 2000  # drops that run together, for the cache
 
 
 def tabulate(
@@ -73,7 +71,7 @@ def tabulate(
         raise InputError(f"{threads} is no number of threads; give 1 or more", "threads")
     stated = problem.to_problem()
     size = math.prod(stated.shape)
-    block = min(_BLOCK if stated.oblique is None else _OBLIQUE_BLOCK, math.ceil(size / threads))
+    block = min(_BLOCK, math.ceil(size / threads))
     blocks = [stated]
     if block < size:
         blocks = [stated.take(slice(begin, begin + block)) for begin in range(0, size, block)]
@@ -101,12 +99,12 @@ def _table_of(problem: Problem) -> Response:
     """Return the response of a block of drops, with arrays of a batch, and without its history."""
     # Newton iterates may overflow; results that are not finite are detected and retried
     with np.errstate(all="ignore"):
-        if problem.is_rigid_and_normal:
-            # a law without a force does not load the compiler
+        if problem.is_rigid_and_still:
+            # a drop of bodies that vibrate does not load it
             from vibroimpact.dynamics.rigid.drops import follow
 
             return follow(problem, None, keeps_bounces=False)
-        run = Run(problem, solver_for(problem))
+        run = Run(problem)
         while run.moving.any():
             run.advance()
         return response_of(run)

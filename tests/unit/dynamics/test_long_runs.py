@@ -62,7 +62,8 @@ def test_a_history_takes_little_more_memory_than_its_numbers() -> None:
 def test_legs_are_the_same_when_they_come_back() -> None:
     """A law with a memory, whose bounces hold another law after each deepest point."""
     law = WaltonBraun(stiffness=4e5, restitution=0.6)
-    problem = replace(drop(4, law), oblique=vi.Oblique(velocity=(0.1, 0.0)))
+    oblique = vi.Oblique(velocity=(0.1, 0.0))
+    problem = replace(drop(4, law), air=vi.Air(), oblique=oblique)
     response = vi.simulate(problem)
     assert isinstance(response.bounces, PackedList)
     again, many = PackedList(), [*response.bounces] * 10  # the last ones are not packed
@@ -89,7 +90,8 @@ def _same(one: object, other: object) -> None:
         assert one is other or one == other
     else:
         for name, value in vars(one).items():
-            _same(value, getattr(other, name))
+            if not name.startswith("_"):  # what a flight in air has computed so far
+                _same(value, getattr(other, name))
 
 
 def test_the_history_of_a_drop_is_that_of_the_same_drop_in_a_batch() -> None:

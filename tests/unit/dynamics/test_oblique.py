@@ -13,11 +13,9 @@ import pytest
 import vibroimpact as vi
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.sections.keys import with_values
-from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.dynamics.columns import LEDGER, OBLIQUE_LEDGER, VIBRATION_LEDGER
-from vibroimpact.dynamics.oblique import oblique_motion, sliding
-from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
-from vibroimpact.dynamics.rigid import solve_contact
+from vibroimpact.dynamics.oblique import rubbed_contact
+from vibroimpact.dynamics.rigid import drops as drops_of_rigid
 from vibroimpact.runs.tables import ledger_table
 
 RADIUS, MASS = 0.01, 0.02
@@ -326,23 +324,13 @@ def test_a_batch_is_its_drops() -> None:
 
 @pytest.mark.parametrize("friction", ["mdr", "mindlin", "mindlin-rescale", "mindlin-force"])
 def test_friction_of_a_drop_does_not_depend_on_its_neighbours(friction: str) -> None:
-    """Under the same normal motion, bit for bit."""
-    speeds = np.linspace(0.05, 6.0, 40)
-    law = FRICTION[friction]
-    assert isinstance(law, CompliantFriction)
-    normal = normal_motion_of(
-        problem(
-            "hunt-crossley", impacts=1, oblique=vi.Oblique(velocity=(speeds, 0.2), friction=law)
-        )
-    )
-    none = np.zeros(len(speeds))
-    slips = np.stack([1.0 + none, none, speeds, none], axis=1)
-    whole = sliding.slide(law, normal, slips, MASS + none)
-    for drop in range(len(speeds)):
-        here = np.array([drop])
-        alone = sliding.slide(law, normal.take(here), slips[here], MASS + none[here])
-        for one, all_of_them in zip(alone, whole, strict=True):
-            assert np.array_equal(one[0], all_of_them[drop])
+    """Bit for bit."""
+    oblique = vi.Oblique(velocity=(np.linspace(0.05, 6.0, 40), 0.2), friction=FRICTION[friction])
+    drops = problem("hunt-crossley", impacts=1, oblique=oblique)
+    together = vi.tabulate(drops).impacts
+    for drop in range(0, 40, 3):
+        for name, values in vi.tabulate(drops.take(drop)).impacts.items():
+            np.testing.assert_array_equal(together[name][drop], values, err_msg=name)
 
 
 @pytest.mark.parametrize(
@@ -390,21 +378,6 @@ def test_an_oblique_drop_is_what_it_is_alone(law: str, friction: str) -> None:
             np.testing.assert_array_equal(
                 turned[name][size - 1 - drop, :rows], values[0], err_msg=name
             )
-
-
-def normal_motion_of(drops: vi.Problem) -> NormalMotion:
-    """Return the normal motion of the first contacts of drops."""
-    heard: list[NormalMotion] = []
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(
-            oblique_motion,
-            "collide",
-            lambda law, normal, *others: (
-                heard.append(normal) or sliding.collide(law, normal, *others)
-            ),
-        )
-        vi.tabulate(drops)
-    return heard[0]
 
 
 @pytest.mark.parametrize("friction", ["mdr", "mindlin", "mindlin-rescale"])
@@ -825,7 +798,7 @@ def test_sliding_throughout_is_what_the_integration_finds(
     short = vi.tabulate(problem("hunt-crossley", oblique=oblique, impacts=1)).impacts[
         "separation_velocity_x_m_s"
     ]
-    monkeypatch.setattr(sliding, "_ROUNDING", -1e9)
+    monkeypatch.setattr(rubbed_contact, "_ROUNDING_AT_RELEASE", -1e9)
     whole = vi.tabulate(problem("hunt-crossley", oblique=oblique, impacts=1)).impacts[
         "separation_velocity_x_m_s"
     ]
@@ -854,7 +827,7 @@ def test_more_steps_change_little(law: str, friction: str, monkeypatch: pytest.M
         oblique=oblique,
     )
     found = vi.tabulate(drops).impacts["separation_velocity_x_m_s"][:, 0]
-    monkeypatch.setattr(solve_contact, "friction_steps", lambda tolerance: 48)
+    monkeypatch.setattr(drops_of_rigid, "friction_steps", lambda tolerance: 48)
     more = vi.tabulate(drops).impacts["separation_velocity_x_m_s"][:, 0]
     assert (np.abs(found - more) < 1e-4 * slip).all()
 

@@ -52,7 +52,7 @@ def with_normal_motion(
     solved, contact = collocate_contact(
         at_touch, _manner(conditions, 0, tolerance), rules, grid, room
     )
-    return solved, contact, RecordedContact.of(conditions, 1e-13), grid.motion[:, : grid.extent[1]]
+    return solved, contact, RecordedContact.of(conditions, 1e-13), grid.motion[:, : grid.points[0]]
 
 
 @compiled(lambda t: t.void(t.matrix, t.cube, t.integer, t.integer))

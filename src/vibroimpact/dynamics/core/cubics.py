@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.friction_records import Cubic
 
@@ -20,19 +17,6 @@ def cubic_at(cubic: Cubic, share: float) -> tuple[float, float]:
     twist = cubic.slope + cubic.end_slope - 2.0 * change
     value = cubic.value + share * (cubic.slope + share * (bend + share * twist))
     return value, cubic.slope + share * (2.0 * bend + 3.0 * share * twist)
-
-
-@compiled(lambda t: t.matrix(t.vector, t.vector, t.integer))
-def values_in_parts(values: Floats, slopes: Floats, parts: int) -> Floats:
-    """Return the values of cubics at the ends of equal parts of steps (G - 1, parts),
-    from values and slopes at their ends (G,).
-    """
-    refined = np.empty((len(values) - 1, parts))
-    for step in range(len(values) - 1):
-        cubic = Cubic(values[step], slopes[step], values[step + 1], slopes[step + 1])
-        for part in range(parts):
-            refined[step, part], _ = cubic_at(cubic, (part + 1) / parts)
-    return refined
 
 
 @compiled(lambda t: t.real(t.of(Cubic)))

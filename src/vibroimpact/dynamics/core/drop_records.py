@@ -8,9 +8,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from vibroimpact.arrays import Integers
-from vibroimpact.dynamics.core.line_records import LineManner
-from vibroimpact.dynamics.core.normal_records import NormalGrid
-from vibroimpact.dynamics.core.phase_records import PhaseRules
+from vibroimpact.dynamics.core.friction_records import Rubbing
+from vibroimpact.dynamics.core.line_records import ContactManner
 from vibroimpact.dynamics.core.records import Boolean, Cube, Matrix, Real, Vector
 
 (
@@ -23,6 +22,7 @@ from vibroimpact.dynamics.core.records import Boolean, Cube, Matrix, Real, Vecto
     VELOCITY,
     CLOSING,
     DEEPEST,
+    DENT,
     DISSIPATED,
     PLASTIC,
     STORED,
@@ -30,14 +30,17 @@ from vibroimpact.dynamics.core.records import Boolean, Cube, Matrix, Real, Vecto
     SAG,
     REST_TIME,
     END_TIME,
-) = range(16)
+) = range(17)
 """State of a drop: mass [kg], radius [m], gravity [m/s^2] and rest speed [m/s]; time [s], gap [m]
-and upward velocity [m/s]; approach speed at its touch [m/s]; deepest indentation so far [m]; energy
-lost in damping and in plastic work, stored in the contact and written off at rest [J]; static
-indentation [m]; when rest and the end of the run are [s].
+and upward velocity [m/s]; approach speed at its touch [m/s]; deepest indentation so far, and where
+it touches next [m]; energy lost in damping and in plastic work, stored in the contact and written
+off at rest [J]; static indentation [m]; when rest and the end of the run are [s].
 """
 
-STATES = 16
+STATES = 17
+
+RUBBED, MICROSLIP = range(2)
+"""Energies that friction has taken so far, and the part of it that was lost in microslip [J]."""
 
 (
     IMPACT,
@@ -58,12 +61,27 @@ STATES = 16
 ) = range(15)
 """Columns of the table of impacts, in the order of `columns.IMPACT_COLUMNS`."""
 
-COMPRESSION, DAMPED, RELEASE_GAP, RELEASE_VELOCITY, LEFT_STORED = range(15, 20)
-"""Further ones: duration of the compression [s], energy lost in damping [J], and gap [m], upward
-velocity [m/s] and stored energy [J] at the end of the contact.
+COMPRESSION, DAMPED, RELEASE_GAP, RELEASE_VELOCITY, LEFT_STORED, DENT_BEFORE = range(15, 21)
+"""Further ones: duration of the compression [s], energy lost in damping [J]; gap [m], upward
+velocity [m/s] and stored energy [J] at the end of the contact; the deepest indentation there before
+it [m].
 """
 
-COLUMNS = 20
+COLUMNS = 21
+
+ALONG = 21
+"""The first of those of the motion along the plate, in the order of
+`columns.OBLIQUE_IMPACT_COLUMNS`.
+"""
+
+TANGENTIAL_RESTITUTION, REBOUND_ANGLE, FRICTION_LOST, MICROSLIP_LOST, GROSS_SLIP_LOST = range(
+    33, 38
+)
+
+RELEASE_X, RELEASE_Y = range(38, 40)
+"""Further ones: where the centre is at the end of the contact [m]."""
+
+OBLIQUE_COLUMNS = 40
 
 AT_START, IN_FLIGHT, AT_TOUCH = -3, -2, -1
 """Phases of the run of a drop; one that has ended has a number of `ENDINGS`."""
@@ -77,6 +95,7 @@ ENDINGS = (
     "left for good",
     "limit of impacts",
     "failed",
+    "beside the plate",
 )
 """Reasons for the end of a run, by their numbers."""
 
@@ -89,6 +108,7 @@ ENDINGS = (
     END_LEFT,
     END_AT_LIMIT,
     END_FAILED,
+    END_BESIDE,
 ) = range(len(ENDINGS))
 
 
@@ -105,17 +125,13 @@ class StopRules(NamedTuple):
 class DropManner(NamedTuple):
     """What stays the same for all drops of a batch.
 
-    manner, rules, grid, collocates: how contacts are solved, as `lines.follow_lines` takes them.
-    addresses (4,): the functions of the law. lasts: does the memory of the law last from impact to
-    impact? waits: does the law depend on the approach speed, so that a drop waits at its touch for
-    its coefficients? stops: rules that end runs in flight.
+    contacts: how contacts are solved. has_force: has the law a force, so that there are any? lasts:
+    does the memory of the law last from impact to impact? waits: does a drop wait at its touch for
+    what the law is at the approach speed? stops: rules that end runs in flight.
     """
 
-    manner: LineManner
-    rules: PhaseRules
-    grid: NormalGrid
-    collocates: Boolean
-    addresses: Integers
+    contacts: ContactManner
+    has_force: Boolean
     lasts: Boolean
     waits: Boolean
     stops: StopRules
@@ -125,10 +141,12 @@ class Drops(NamedTuple):
     """State of B drops, and room for R impacts of each.
 
     phases (B,): of those above, or how the run ended. impacts, flights (B,): how many there were.
-    state (B, 16). rows (B, R, 20): the table of impacts, with the further columns. laws (B, L, K):
-    coefficients of the law of each impact, of which the last one goes on. at_touch (B, K): those at
-    the approach speed of a touch, where they depend on it. coefficients (B, K): of the next impact,
-    with the memory of earlier ones.
+    state (B, 17). rows (B, R, 21 or 40): the table of impacts, with the further columns.
+
+    laws (B, L, K): coefficients of the law of each impact, of which the last one goes on. at_touch
+    (B, K): those at the approach speed of a touch, where they depend on it; of a law without a
+    force its separation speed [m/s]. coefficients (B, K): of the next impact, with the memory of
+    earlier ones.
     """
 
     phases: Integers
@@ -141,12 +159,30 @@ class Drops(NamedTuple):
     coefficients: Matrix
 
 
+class ObliqueDrops(NamedTuple):
+    """What B drops have that move along the plate, too.
+
+    rubbing: the law of their friction. half_x, half_y: half the sides of the plate [m]. spheres (B,
+    8), along (B, 7): the members of `RubbedSphere` and `SphereState`. friction (B, F): coefficients
+    of the law. taken (B, 2): the energies above.
+    """
+
+    rubbing: Rubbing
+    half_x: Real
+    half_y: Real
+    spheres: Matrix
+    along: Matrix
+    friction: Matrix
+    taken: Matrix
+
+
 class FreeFall(NamedTuple):
     """A flight above a plate at rest: start, top and next touch [s], and the speed of that [m/s];
-    times are infinite if they do not come.
+    times are infinite if they do not come. is_beside: is the centre beside the plate then?
     """
 
     start: Real
     top: Real
     touch: Real
     speed: Real
+    is_beside: Boolean

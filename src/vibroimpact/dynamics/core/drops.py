@@ -22,6 +22,8 @@ from vibroimpact.dynamics.core.drop_records import (
     COMPRESSION,
     DAMPED,
     DEEPEST,
+    DENT,
+    DENT_BEFORE,
     DISSIPATED,
     DURATION,
     END_BY_REST_SPEED,
@@ -62,6 +64,7 @@ from vibroimpact.dynamics.core.drop_records import (
     StopRules,
 )
 from vibroimpact.dynamics.core.events import ENDS
+from vibroimpact.dynamics.core.free_fall import next_touch
 from vibroimpact.dynamics.core.law import law_at_touch, law_remembering
 from vibroimpact.dynamics.core.line import CAPTURED, FAILED
 from vibroimpact.dynamics.core.line_records import LineContact, LineManner
@@ -77,50 +80,119 @@ _ENDS_AT_PULL_OFF = ENDS.index("pull-off")
 
 @compiled(lambda t: t.void(t.of(DropManner), t.of(Drops), t.integer))
 def follow_drops(manner: DropManner, drops: Drops, pause: int) -> None:
-    """Follow drops until their runs end, or they have had `pause` impacts.
+    """Follow drops along the normal until their runs end, or they have had `pause` impacts.
 
-    Where the law depends on the approach speed, they are followed until they touch; in the next
-    call they go on from there, with the coefficients at that speed.
+    Where the law depends on the approach speed, or has no force, they are followed until they
+    touch; in the next call they go on from there, with what the law is at that speed.
     """
-    room = room_of(manner.rules)
-    addresses = manner.addresses
-    lasts = manner.lasts
-    rules = manner.rules
-    grid = manner.grid
+    contacts = manner.contacts
+    addresses = contacts.addresses
+    room = room_of(contacts.rules)
     next_coefficients = np.zeros(drops.coefficients.shape[1])
     last_law = drops.laws.shape[1] - 1
     for drop in range(len(drops.phases)):
         state = drops.state[drop]
         coefficients = drops.coefficients[drop]
         impacts = drops.impacts[drop]
-        phase = drops.phases[drop]
-        if phase == AT_START:
-            remember(addresses, False, drops.laws[drop, 0], 0.0, coefficients)
-            set_rest_speed(addresses, coefficients, state)
-            phase = IN_FLIGHT
-        if phase == AT_TOUCH and manner.waits:
-            remember(addresses, lasts, drops.at_touch[drop], state[DEEPEST], coefficients)
+        phase = ready(manner, drops, drop)
         while phase == IN_FLIGHT or (phase == AT_TOUCH and impacts < pause):
             if phase == IN_FLIGHT:
-                level, _, _, _, _ = levels_at(addresses[2])(coefficients)
-                phase = fly(manner.stops, -level, impacts, state)
+                gap = touch_gap(manner.has_force, addresses, coefficients)
+                phase = fly(manner.stops, next_touch(state, gap), impacts, state)
                 drops.flights[drop] += 1
                 if manner.waits:
                     break
                 continue
-            law = law_at_touch(addresses, coefficients, room.series, state[CLOSING])
-            bodies = bodies_at_touch(manner.manner, law, state)
-            _, contact = solve_pair(law, bodies, rules, grid, manner.collocates, room)
             row = drops.rows[drop, impacts]
-            write_contact(state, row, contact)
             impacts += 1
             row[IMPACT] = impacts
+            if not manner.has_force:
+                phase = collide_at_once(drops.at_touch[drop, 0], state, row)
+                continue
+            law = law_at_touch(addresses, coefficients, room.series, state[CLOSING])
+            bodies = bodies_at_touch(contacts.manner, law, state)
+            _, contact = solve_pair(
+                law, bodies, contacts.rules, contacts.grid, contacts.collocates, room
+            )
+            write_contact(state, row, contact)
             fresh = drops.laws[drop, min(impacts, last_law)]
-            remember(addresses, lasts, fresh, state[DEEPEST], next_coefficients)
+            remember(addresses, manner.lasts, fresh, state[DENT], next_coefficients)
             phase = leave(manner.waits, law, contact, next_coefficients, state, row)
             coefficients[:] = next_coefficients
         drops.phases[drop] = phase
         drops.impacts[drop] = impacts
+
+
+@compiled(lambda t: t.integer(t.of(DropManner), t.of(Drops), t.integer))
+def ready(manner: DropManner, drops: Drops, drop: int) -> int:
+    """Give a drop that begins, or that has waited at its touch, the coefficients of its law; return
+    its phase then.
+    """
+    addresses = manner.contacts.addresses
+    state = drops.state[drop]
+    coefficients = drops.coefficients[drop]
+    phase = drops.phases[drop]
+    if phase == AT_START:
+        begin(manner.has_force, addresses, drops.laws[drop, 0], coefficients, state)
+        return IN_FLIGHT
+    if phase == AT_TOUCH and manner.waits and manner.has_force:
+        remember(addresses, manner.lasts, drops.at_touch[drop], state[DENT], coefficients)
+    return int(phase)
+
+
+@compiled(lambda t: t.void(t.boolean, t.integers, t.vector, t.vector, t.vector))
+def begin(
+    has_force: bool, addresses: Integers, fresh: Floats, coefficients: Floats, state: Floats
+) -> None:
+    """Give a drop the coefficients of its first law, and a rest speed unless it has one.
+
+    That is the speed from which it would rise by its static indentation, and at least 1e-6 of the
+    first approach speed.
+    """
+    least = _LEAST_REST_SPEED * next_touch(state, 0.0).speed
+    if has_force:
+        remember(addresses, False, fresh, 0.0, coefficients)
+        touch, release, _, _, _ = levels_at(addresses[2])(coefficients)
+        weight = state[MASS] * state[GRAVITY]
+        sag = static_indentation(addresses, coefficients, release, weight) - touch
+        least = max(math.sqrt(2.0 * state[GRAVITY] * sag), least)
+    if math.isnan(state[REST_SPEED]):
+        state[REST_SPEED] = least
+
+
+@compiled(lambda t: t.real(t.boolean, t.integers, t.vector))
+def touch_gap(has_force: bool, addresses: Integers, coefficients: Floats) -> float:
+    """Return the gap at which a drop touches next [m]: zero, or below it in a dent."""
+    if not has_force:
+        return 0.0
+    level, _, _, _, _ = levels_at(addresses[2])(coefficients)
+    return -float(level)
+
+
+@compiled(lambda t: t.integer(t.real, t.vector, t.vector))
+def collide_at_once(separation: float, state: Floats, row: Floats) -> int:
+    """Let a drop rebound at its touch with a separation speed [m/s], and return its phase then."""
+    speed = state[CLOSING]
+    lost = 0.5 * state[MASS] * (speed * speed - separation * separation)
+    state[GAP] = 0.0
+    state[VELOCITY] = separation
+    state[DISSIPATED] += lost
+    row[TOUCH] = state[TIME]
+    row[DURATION] = 0.0
+    row[APPROACH] = speed
+    row[SEPARATION] = separation
+    row[INDENTATION] = 0.0
+    row[LOST] = lost
+    row[PLASTIC_WORK] = 0.0
+    row[RELEASE_GAP] = 0.0
+    row[RELEASE_VELOCITY] = separation
+    write_rebound(state, row)
+    if not is_slow(state):
+        return IN_FLIGHT
+    limit = end_of_bounces(state, row)
+    state[END_TIME] = limit if limit < math.inf else state[TIME]
+    lie_still(state, limit, 0.0, 0.0, 0.0)
+    return END_BY_REST_SPEED
 
 
 @compiled(lambda t: t.void(t.integers, t.boolean, t.vector, t.real, t.vector))
@@ -138,53 +210,9 @@ def remember(
             compressed_at(addresses[3])(deepest, fresh, coefficients)
 
 
-@compiled(lambda t: t.void(t.integers, t.vector, t.vector))
-def set_rest_speed(addresses: Integers, coefficients: Floats, state: Floats) -> None:
-    """Give a drop a rest speed, unless it has one.
-
-    That is the speed from which it would rise by its static indentation, and at least 1e-6 of the
-    first approach speed.
-    """
-    if not math.isnan(state[REST_SPEED]):
-        return
-    touch, release, _, _, _ = levels_at(addresses[2])(coefficients)
-    weight = state[MASS] * state[GRAVITY]
-    sag = static_indentation(addresses, coefficients, release, weight) - touch
-    least = _LEAST_REST_SPEED * next_touch(state, 0.0).speed
-    state[REST_SPEED] = max(math.sqrt(2.0 * state[GRAVITY] * sag), least)
-
-
-@compiled(lambda t: t.of(FreeFall)(t.vector, t.real))
-def next_touch(state: Floats, level: float) -> FreeFall:
-    """Return the flight that a drop is about to make until its gap is at a level [m].
-
-    That is zero, or below it in a dent. The speed of touch v follows from v^2 = v0^2 + 2 g h, and
-    the time is (v0 + v)/g = 2 h/(v - v0), with the height h above the level.
-    """
-    start = state[TIME]
-    velocity = state[VELOCITY]
-    gravity = state[GRAVITY]
-    height = state[GAP] - level
-    speed = math.sqrt(max(velocity * velocity + 2.0 * gravity * height, 0.0))
-    if velocity > 0.0:
-        if gravity == 0.0:
-            return FreeFall(start, math.inf, math.inf, speed)
-        return FreeFall(
-            start, start + velocity / gravity, start + (velocity + speed) / gravity, speed
-        )
-    if speed > velocity and not (gravity == 0.0 and velocity == 0.0):
-        # the same root without cancellation
-        return FreeFall(start, start, start + 2.0 * height / (speed - velocity), speed)
-    return FreeFall(start, start, math.inf, speed)
-
-
-@compiled(lambda t: t.integer(t.of(StopRules), t.real, t.integer, t.vector))
-def fly(stops: StopRules, level: float, impacts: int, state: Floats) -> int:
-    """Let a drop fly until it touches at a gap [m], or until a rule ends its run.
-
-    Return its phase then.
-    """
-    flight = next_touch(state, level)
+@compiled(lambda t: t.integer(t.of(StopRules), t.of(FreeFall), t.integer, t.vector))
+def fly(stops: StopRules, flight: FreeFall, impacts: int, state: Floats) -> int:
+    """Let a drop fly until it touches, or until a rule ends its run; return its phase then."""
     end, ending = first_end(stops, flight, impacts)
     time = min(end, flight.touch)
     elapsed = time - flight.start
@@ -242,7 +270,9 @@ def write_contact(state: Floats, row: Floats, contact: LineContact) -> None:
     row[RELEASE_GAP] = -contact.end.delta
     row[RELEASE_VELOCITY] = -contact.end.rate
     row[LEFT_STORED] = contact.stored
+    row[DENT_BEFORE] = state[DENT]
     state[DEEPEST] = max(state[DEEPEST], contact.deepest)
+    state[DENT] = max(state[DENT], contact.deepest)
     state[TIME] = touch + contact.end.time
     state[GAP] = -contact.end.delta
     state[VELOCITY] = -contact.end.rate
@@ -308,12 +338,18 @@ def release(state: Floats, row: Floats, contact: LineContact, law: Law, next_lev
     state[DISSIPATED] += lost - contact.plastic
     state[PLASTIC] += contact.plastic
     row[LOST] = lost
+    write_rebound(state, row)
+    return phase
+
+
+@compiled(lambda t: t.void(t.vector, t.vector))
+def write_rebound(state: Floats, row: Floats) -> None:
+    """Write the restitution of an impact, and the height to which a drop rises after it."""
     separation = row[SEPARATION]
     row[RESTITUTION] = separation / row[APPROACH]
     if state[GRAVITY] > 0.0:
         rise = 0.5 * (separation * separation) / state[GRAVITY]
         row[REBOUND] = state[RADIUS] + state[GAP] + rise
-    return phase
 
 
 @compiled(lambda t: t.void(t.vector, t.integers, t.vector, t.real, t.real, t.real))
@@ -327,15 +363,26 @@ def bring_to_rest(
 ) -> None:
     """Put a drop that has come to rest at a time [s] into its static indentation.
 
-    The contact has an energy `stored` [J]; what the drop has beyond that at rest is written off.
+    The contact has an energy `stored` [J].
+    """
+    weight = state[MASS] * state[GRAVITY]
+    sag = static_indentation(addresses, coefficients, release_level, weight)
+    stored_at_rest, _ = energies_at(addresses[1])(sag, coefficients)
+    lie_still(state, time, stored, sag, stored_at_rest)
+
+
+@compiled(lambda t: t.void(t.vector, t.real, t.real, t.real, t.real))
+def lie_still(state: Floats, time: float, stored: float, sag: float, stored_at_rest: float) -> None:
+    """Write that a drop has come to rest at a time [s] with an indentation `sag` [m].
+
+    The energy of the contact was `stored` and is `stored_at_rest` [J]; what the drop had beyond
+    that at rest is written off.
     """
     mass = state[MASS]
     gravity = state[GRAVITY]
     velocity = state[VELOCITY]
     weight = mass * gravity
     energy = mass * (0.5 * (velocity * velocity) + gravity * state[GAP]) + stored
-    sag = static_indentation(addresses, coefficients, release_level, weight)
-    stored_at_rest, _ = energies_at(addresses[1])(sag, coefficients)
     state[REST_TIME] = time
     state[SAG] = sag
     state[STORED] = stored_at_rest

@@ -9,7 +9,36 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from vibroimpact.arrays import Integers
-from vibroimpact.dynamics.core.records import Boolean, Matrix, Real
+from vibroimpact.dynamics.core.records import Boolean, Integer, Matrix, Real
+
+NO_FRICTION, IMPULSIVE, ELASTIC = range(3)
+"""Kinds of friction laws: none; one that follows the normal impulse; one with the tangential
+compliance of the contact.
+"""
+
+HERTZ, SPRING, RADIUS, MODULUS, KAPPA = range(5)
+"""Coefficients of an elastic one: Hertz's stiffness [N/m^1.5], 2 G* [Pa], effective radius [m], E*
+[Pa], kappa.
+"""
+
+ELASTIC_COEFFICIENTS = 5
+
+
+class Rubbing(NamedTuple):
+    """The friction law of a batch of drops.
+
+    kind: of those above. addresses (2,): of the functions of an impulsive one. growing, shrinking,
+    at_rim, sliding_energy: of an elastic one; see `Friction`. rounding: error of the rate of its
+    depth at release, as a part of the largest.
+    """
+
+    kind: Integer
+    addresses: Integers
+    growing: Real
+    shrinking: Real
+    at_rim: Boolean
+    sliding_energy: Real
+    rounding: Real
 
 
 class NormalState(NamedTuple):

@@ -8,7 +8,9 @@ from __future__ import annotations
 from typing import NamedTuple, TypeAlias
 
 from vibroimpact.arrays import Bools, Integers
-from vibroimpact.dynamics.core.records import Integer, Matrix, Real, Vector
+from vibroimpact.dynamics.core.normal_records import NormalGrid
+from vibroimpact.dynamics.core.phase_records import PhaseRules
+from vibroimpact.dynamics.core.records import Boolean, Integer, Matrix, Real, Vector
 
 Address: TypeAlias = int
 Booleans: TypeAlias = Bools
@@ -132,17 +134,26 @@ class LineContacts(NamedTuple):
 
     outcomes (B,): of `core.line`. ends (10, B): duration [s], indentation [m] and its rate at the
     end [m/s], energy lost in damping [J], deepest indentation [m] and its time [s], largest force
-    [N] and its time [s], plastic work and stored energy [J]. shapes (B,): numbers that tell the
-    parts of the normal motions, 0 of contacts that were followed step by step. begins (B,): where
-    these begin in motions, six rows of points each, of `normal_records`. The last three are empty
-    where no normal motion is asked for.
+    [N] and its time [s], plastic work and stored energy [J].
     """
 
     outcomes: Integers
     ends: Matrix
-    shapes: Integers
-    begins: Integers
-    motions: Vector
+
+
+class ContactManner(NamedTuple):
+    """How contacts are solved.
+
+    manner: what all have in common, without bodies. rules: the Gauss rules of the collocation.
+    grid: that of normal motions. collocates: is collocation tried? addresses (4,): the functions of
+    the law.
+    """
+
+    manner: LineManner
+    rules: PhaseRules
+    grid: NormalGrid
+    collocates: Boolean
+    addresses: Integers
 
 
 class ContactRoom(NamedTuple):

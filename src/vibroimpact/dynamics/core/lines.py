@@ -6,11 +6,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats, Integers
+from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.law import law_at_touch, law_remembering
 from vibroimpact.dynamics.core.line import follow_line, line_under
 from vibroimpact.dynamics.core.line_records import (
+    ContactManner,
     ContactRoom,
     Line,
     LineContact,
@@ -20,7 +21,7 @@ from vibroimpact.dynamics.core.line_records import (
     LineSteps,
 )
 from vibroimpact.dynamics.core.line_step import FREE, IMPLICIT, advance, energies_of
-from vibroimpact.dynamics.core.normal_records import MOTION_ROWS, NormalGrid
+from vibroimpact.dynamics.core.normal_records import NormalGrid
 from vibroimpact.dynamics.core.phase_contact import collocate_contact
 from vibroimpact.dynamics.core.phase_records import ROWS, PhaseRules
 from vibroimpact.dynamics.core.records import Law
@@ -88,69 +89,34 @@ def solve_pair(
     return False, follow_line(law, bodies, room.steps)
 
 
-@compiled(
-    lambda t: t.tuple(t.integer, t.integer)(
-        t.of(LineManner),
-        t.of(PhaseRules),
-        t.of(NormalGrid),
-        t.boolean,
-        t.integers,
-        t.matrix,
-        t.matrix,
-        t.of(LineContacts),
-        t.integer,
-        t.integer,
-    ),
-)
+@compiled(lambda t: t.void(t.of(ContactManner), t.matrix, t.matrix, t.of(LineContacts)))
 def follow_lines(
-    manner: LineManner,
-    rules: PhaseRules,
-    grid: NormalGrid,
-    collocates: bool,
-    addresses: Integers,
-    coefficients: Floats,
-    touches: Floats,
-    contacts: LineContacts,
-    first: int,
-    written: int,
-) -> tuple[int, int]:
+    manner: ContactManner, coefficients: Floats, touches: Floats, contacts: LineContacts
+) -> None:
     """Solve the contacts of B pairs of rigid bodies, each from touch on: by collocation, or step by
     step where that does not come out.
 
-    Return how many are solved, and how many numbers of normal motions are written; it ends early
-    where there is no room for more of these.
-
     Parameters
     ----------
-    manner : LineManner
-        What all have in common; the bodies of each pair take the place of those in it.
-    rules : PhaseRules
-        The Gauss rules of the collocation.
-    grid : NormalGrid
-        The grid of normal motions.
-    collocates : bool
-        Is it tried?
-    addresses : array of int, shape (4,)
-        The functions of their law.
+    manner : ContactManner
+        How they are solved; the bodies of each pair take the place of those in it.
     coefficients : array, shape (B, K)
-        Its coefficients for each pair.
+        Of the law for each pair.
     touches : array, shape (5, B)
         Effective mass [kg], gravity [m/s^2], approach speed [m/s], depth [m] and speed scale [m/s]
         of each pair.
     contacts : LineContacts
         Room for the contacts.
-    first, written : int
-        What earlier calls returned.
     """
-    room = room_of(rules)
+    room = room_of(manner.rules)
     outcomes = contacts.outcomes
     ends = contacts.ends
-    for pair in range(first, len(outcomes)):
-        law = law_at_touch(addresses, coefficients[pair], room.series, touches[2, pair])
+    for pair in range(len(outcomes)):
+        law = law_at_touch(manner.addresses, coefficients[pair], room.series, touches[2, pair])
         bodies = with_bodies(
-            manner, touches[0, pair], touches[1, pair], touches[3, pair], touches[4, pair]
+            manner.manner, touches[0, pair], touches[1, pair], touches[3, pair], touches[4, pair]
         )
-        solved, contact = solve_pair(law, bodies, rules, grid, collocates, room)
+        _, contact = solve_pair(law, bodies, manner.rules, manner.grid, manner.collocates, room)
         outcomes[pair] = contact.outcome
         ends[0, pair] = contact.end.time
         ends[1, pair] = contact.end.delta
@@ -162,17 +128,6 @@ def follow_lines(
         ends[7, pair] = contact.time_of_peak_force
         ends[8, pair] = contact.plastic
         ends[9, pair] = contact.stored
-        if grid.steps > 0 and solved:
-            points = grid.extent[1]
-            if written + MOTION_ROWS * points > len(contacts.motions):
-                return pair, written
-            contacts.shapes[pair] = grid.extent[0]
-            contacts.begins[pair] = written
-            for row in range(MOTION_ROWS):
-                for point in range(points):
-                    contacts.motions[written + point] = grid.motion[row, point]
-                written += points
-    return len(outcomes), written
 
 
 @compiled(

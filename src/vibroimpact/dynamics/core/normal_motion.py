@@ -23,12 +23,10 @@ from vibroimpact.dynamics.core.normal_records import (
     NODE_TIME,
     PACE,
     PACE_SLOPE,
-    SHAPES,
-    SMOOTH,
-    STEEP,
     TIME,
     VALUES,
     NormalGrid,
+    NormalPath,
 )
 from vibroimpact.dynamics.core.phase_records import (
     BARYCENTRIC,
@@ -60,11 +58,22 @@ def graded(share: float) -> float:
     return share * (1.0 + _COARSER * (1.0 - share))
 
 
-@compiled(lambda t: t.void(t.of(NormalGrid), t.integer, t.integer))
-def note_part(grid: NormalGrid, steps: int, digit: int) -> None:
+@compiled(lambda t: t.void(t.of(NormalGrid), t.integer))
+def note_part(grid: NormalGrid, steps: int) -> None:
     """Note that a part of a contact has been written."""
-    grid.extent[0] = SHAPES * grid.extent[0] + digit
-    grid.extent[1] += steps + 1
+    first = grid.points[0]
+    if first > 0:
+        grid.parameter[first - 1] = 0.0
+    for step in range(steps):
+        grid.parameter[first + step] = 1.0
+    grid.points[0] = first + steps + 1
+
+
+@compiled(lambda t: t.of(NormalPath)(t.of(NormalGrid)))
+def written_path(grid: NormalGrid) -> NormalPath:
+    """Return the normal motion that has been written."""
+    points = grid.points[0]
+    return NormalPath(grid.motion[:, :points].copy(), grid.parameter[: points - 1].copy())
 
 
 @compiled(lambda t: t.boolean(t.of(NormalGrid), t.integer, t.integer))
@@ -195,7 +204,7 @@ def write_segment(
         for point in range(steps):
             room[IMPULSE, point] *= factor
         room[IMPULSE, steps] = stopped
-    first = grid.extent[1]
+    first = grid.points[0]
     time = motion[TIME, first - 1] if first > 0 else 0.0
     impulse = motion[IMPULSE, first - 1] if first > 0 else 0.0
     sign = -segment.sign
@@ -216,14 +225,14 @@ def write_segment(
         motion[FORCE_SLOPE, target] = sign * room[FORCE_SLOPE, point] * rate
         motion[IMPULSE, target] = impulse + sign * room[IMPULSE, point]
         target += 1 if sign > 0.0 else -1
-    note_part(grid, steps, STEEP if steep else SMOOTH)
+    note_part(grid, steps)
 
 
 @compiled(lambda t: t.void(t.of(NormalGrid), t.real))
 def write_glide(grid: NormalGrid, duration: float) -> None:
     """Write a motion without a force, after a segment, for a time [s]."""
     motion = grid.motion
-    first = grid.extent[1]
+    first = grid.points[0]
     for point in range(grid.steps + 1):
         motion[TIME, first + point] = motion[TIME, first - 1] + duration * point / grid.steps
         motion[PACE, first + point] = duration / grid.steps
@@ -231,4 +240,4 @@ def write_glide(grid: NormalGrid, duration: float) -> None:
         motion[FORCE, first + point] = 0.0
         motion[FORCE_SLOPE, first + point] = 0.0
         motion[IMPULSE, first + point] = motion[IMPULSE, first - 1]
-    note_part(grid, grid.steps, SMOOTH)
+    note_part(grid, grid.steps)

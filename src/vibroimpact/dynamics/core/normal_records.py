@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from vibroimpact.arrays import Integers
-from vibroimpact.dynamics.core.records import Cube, Integer, Matrix
+from vibroimpact.dynamics.core.records import Cube, Integer, Matrix, Vector
 
 MORE_STEPS = 3
 """Times as many steps where the force is steep."""
@@ -32,12 +32,16 @@ GRID_ROWS = 13
 VALUES, INTEGRALS = range(2)
 """Matrices of a grid of one's own."""
 
-SMOOTH, STEEP = 1, 2
-"""Digits, to the base `SHAPES`, of the number that tells of which parts a normal motion
-consists, the last one first.
-"""
 
-SHAPES = 3
+class NormalPath(NamedTuple):
+    """The normal motion of a contact at G points of its parameter.
+
+    rows (6, G): those above. steps (G - 1,): of the parameter, 1; a step of zero joins two parts,
+    between which the others may jump.
+    """
+
+    rows: Matrix
+    steps: Vector
 
 
 class NormalGrid(NamedTuple):
@@ -48,8 +52,8 @@ class NormalGrid(NamedTuple):
     at the nodes, and from integrals up to the nodes and y = 1, to the points of the grid; of each
     rule for `steps` and for `MORE_STEPS` times as many. own (2, M, N): room for such matrices of a
     segment in which a contact ends. room (13, W): room for values at the nodes and on the grid.
-    motion (6, R): room for the motion of a contact. extent (2,): number that tells its parts, and
-    number of its points.
+    motion (6, R), parameter (R,): room for the motion of a contact, and for its steps of the
+    parameter. points (1,): number of its points.
     """
 
     steps: Integer
@@ -59,4 +63,5 @@ class NormalGrid(NamedTuple):
     own: Cube
     room: Matrix
     motion: Matrix
-    extent: Integers
+    parameter: Vector
+    points: Integers

@@ -328,7 +328,7 @@ def collocate_contact(
     room : array, shape (17, M)
         Room.
     """
-    grid.extent[:] = 0
+    grid.points[0] = 0
     line = line_under(law, manner)
     touch = law.speed * law.speed
     rounding = _ON_LEVEL * (manner.depth - law.release)

@@ -21,10 +21,54 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
-from vibroimpact.dynamics.core.records import Real, Vector
-from vibroimpact.dynamics.core.tangential_history import TangentialHistory, history_after
+from vibroimpact.dynamics.core.cubics import cubic_at
+from vibroimpact.dynamics.core.friction_records import (
+    HERTZ,
+    KAPPA,
+    MODULUS,
+    RADIUS,
+    SPRING,
+    Cubic,
+    Rubbing,
+)
+from vibroimpact.dynamics.core.normal_records import (
+    FORCE,
+    FORCE_SLOPE,
+    IMPULSE,
+    PACE,
+    TIME,
+    NormalPath,
+)
+from vibroimpact.dynamics.core.records import Matrix, Real, Vector
+from vibroimpact.dynamics.core.sphere_records import (
+    RubbedSphere,
+    SphereState,
+    tangential_mass,
+    turning_of,
+    twisting_of,
+)
+from vibroimpact.dynamics.core.tangential_history import (
+    SPRINGS,
+    TangentialHistory,
+    history_after,
+    lost_in_microslip,
+)
+from vibroimpact.dynamics.core.twisting import slow_spin
+
+_PARTS = 16
+"""Steps in each of the normal motion's: spins after the contact are then within 1e-3 of the
+largest; where the slip turns it is 3e-4.
+"""
+
+_MOST_PARTS = 1024
+_MOST_TURNING = 0.2
+"""Angle by which the free oscillation of a contact that sticks turns in a step at most [rad], until
+there are `_MOST_PARTS`.
+"""
 
 
 class RollingSphere(NamedTuple):
@@ -38,6 +82,23 @@ class RollingSphere(NamedTuple):
     turn: Real
     rolling_coefficient: Real
     gravity: Vector
+
+
+class ResistedPath(NamedTuple):
+    """The motion along the plate during a contact in which rolling is resisted, at G times.
+
+    time: since first touch [s] (G,). moved (G, 2): way of the centre since then [m]. velocity,
+    turning (G, 2): v and w [m/s]. spin (G,): about the normal [rad/s]. friction (G, 2): Q [N].
+    microslip: energy lost while a part of the contact sticks [J].
+    """
+
+    time: Vector
+    moved: Matrix
+    velocity: Matrix
+    turning: Matrix
+    spin: Vector
+    friction: Matrix
+    microslip: Real
 
 
 @compiled(lambda t: t.tuple(t.real, t.real, t.real)(t.real, t.real, t.real))
@@ -131,3 +192,209 @@ def march_resisted(
         )
         turning[step + 1, 0] = turning_x
         turning[step + 1, 1] = turning_y
+
+
+@compiled(lambda t: t.of(TangentialHistory)(t.of(Rubbing), t.vector, t.real, t.real))
+def history_at_touch(
+    rubbing: Rubbing, coefficients: Floats, coefficient: float, rim: float
+) -> TangentialHistory:
+    """Return the history of a contact before first touch.
+
+    `coefficient`: of friction. `rim`: radius of about the largest contact that will come [m], for
+    which the springs of a row are close enough to each other.
+    """
+    return TangentialHistory(
+        rubbing.at_rim,
+        rubbing.growing,
+        rubbing.shrinking,
+        coefficients[HERTZ],
+        coefficients[RADIUS],
+        coefficients[SPRING],
+        coefficient,
+        coefficients[KAPPA],
+        rubbing.sliding_energy,
+        rim / SPRINGS,
+        0.0,
+        np.zeros((2, SPRINGS if rubbing.at_rim else 0)),
+        np.zeros(2),
+        0.0,
+    )
+
+
+@compiled(lambda t: t.real(t.vector, t.vector))
+def rim_of(coefficients: Floats, force: Floats) -> float:
+    """Return the radius of the largest contact under normal forces (G,) [m]."""
+    largest = 0.0
+    for point in range(len(force)):
+        largest = max(largest, force[point])
+    return float(np.cbrt(0.75 * largest * coefficients[RADIUS] / coefficients[MODULUS]))
+
+
+@compiled(lambda t: t.integer(t.of(RubbedSphere), t.vector, t.of(NormalPath)))
+def parts_of(sphere: RubbedSphere, coefficients: Floats, normal: NormalPath) -> int:
+    """Return how many steps there are in each of the normal motion's."""
+    time = normal.rows[TIME]
+    longest = 0.0
+    for point in range(1, len(time)):
+        longest = max(longest, time[point] - time[point - 1])
+    stiffness = coefficients[SPRING] * rim_of(coefficients, normal.rows[FORCE])
+    turning = math.sqrt(stiffness / tangential_mass(sphere)) * longest
+    return int(min(max(math.ceil(turning / _MOST_TURNING), _PARTS), _MOST_PARTS))
+
+
+@compiled(lambda t: t.matrix(t.of(NormalPath), t.integer))
+def refined(normal: NormalPath, parts: int) -> Floats:
+    """Return times [s], normal forces [N] and their impulses so far [N s] (3, G), with `parts`
+    steps for each of the motion's.
+    """
+    rows = normal.rows
+    points = rows.shape[1]
+    fine = np.empty((3, parts * (points - 1) + 1))
+    time = rows[TIME, 0]
+    force = max(rows[FORCE, 0], 0.0)
+    pressed = rows[IMPULSE, 0]  # by the end of each step of the motion
+    highest = pressed
+    fine[0, 0] = time
+    fine[1, 0] = force
+    fine[2, 0] = pressed
+    count = 1
+    for point in range(1, points):
+        before = point - 1
+        pressed = max(pressed, rows[IMPULSE, point])
+        times = Cubic(rows[TIME, before], rows[PACE, before], rows[TIME, point], rows[PACE, point])
+        forces = Cubic(
+            rows[FORCE, before],
+            rows[FORCE_SLOPE, before],
+            rows[FORCE, point],
+            rows[FORCE_SLOPE, point],
+        )
+        impulses = Cubic(
+            rows[IMPULSE, before],
+            rows[PACE, before] * rows[FORCE, before],
+            rows[IMPULSE, point],
+            rows[PACE, point] * rows[FORCE, point],
+        )
+        for part in range(parts):
+            time_before = time
+            force_before = force
+            share = (part + 1) / parts
+            later = rows[TIME, point]
+            force = rows[FORCE, point]
+            impulse = rows[IMPULSE, point]
+            if normal.steps[before] > 0.0:  # where two parts meet nothing lies between
+                later, _ = cubic_at(times, share)
+                force, _ = cubic_at(forces, share)
+                impulse, _ = cubic_at(impulses, share)
+            time = max(time, later)
+            force = max(force, 0.0)
+            highest = max(highest, impulse)
+            if time > time_before or force != force_before:
+                fine[0, count] = time
+                fine[1, count] = force
+                fine[2, count] = min(highest, pressed)
+                count += 1
+    return fine[:, :count].copy()
+
+
+@compiled(lambda t: t.vector(t.of(RubbedSphere), t.real, t.vector, t.vector, t.matrix, t.matrix))
+def spins_about_normal(
+    sphere: RubbedSphere,
+    spin: float,
+    time: Floats,
+    force: Floats,
+    friction: Floats,
+    slip: Floats,
+) -> Floats:
+    """Return a spin about the normal [rad/s] (G,), which twisting slows.
+
+    It does not act on the motion along the plate. `friction` [N], `slip` [m/s]: (G, 2).
+    """
+    spins = np.zeros(len(time))
+    if spin == 0.0:
+        return spins
+    rubs = np.empty(len(time))
+    speeds = np.empty(len(time))
+    for point in range(len(time)):
+        rubs[point] = math.hypot(friction[point, 0], friction[point, 1])
+        speeds[point] = math.hypot(slip[point, 0], slip[point, 1])
+    slow_spin(twisting_of(sphere), abs(spin), sphere.inertia, time, force, rubs, speeds, spins)
+    if spin < 0.0:
+        for point in range(len(time)):
+            spins[point] = -spins[point]
+    return spins
+
+
+@compiled(
+    lambda t: t.of(ResistedPath)(
+        t.of(Rubbing), t.vector, t.of(RubbedSphere), t.of(SphereState), t.of(NormalPath)
+    )
+)
+def resisted_path(
+    rubbing: Rubbing,
+    coefficients: Floats,
+    sphere: RubbedSphere,
+    begun: SphereState,
+    normal: NormalPath,
+) -> ResistedPath:
+    """Return the motion along the plate during a contact in which rolling is resisted.
+
+    Parameters
+    ----------
+    rubbing : Rubbing
+        The friction law.
+    coefficients : array, shape (5,)
+        Of it in this contact; see `friction_records`.
+    sphere : RubbedSphere
+        The sphere.
+    begun : SphereState
+        Its state at first touch.
+    normal : NormalPath
+        The normal motion.
+    """
+    fine = refined(normal, parts_of(sphere, coefficients, normal))
+    time = fine[0]
+    force = fine[1]
+    number = len(time)
+    velocity = np.empty((number, 2))
+    turning = np.empty((number, 2))
+    friction = np.zeros((number, 2))
+    way = np.empty((number - 1, 2))
+    slid = np.zeros(number)
+    velocity[0, 0] = begun.velocity_x
+    velocity[0, 1] = begun.velocity_y
+    turning[0, 0], turning[0, 1] = turning_of(sphere, begun)
+    gravity = np.empty(2)
+    gravity[0] = sphere.gravity_x
+    gravity[1] = sphere.gravity_y
+    turn = sphere.radius * sphere.radius / sphere.inertia
+    rolling = RollingSphere(sphere.mass, turn, sphere.rolling_coefficient, gravity)
+    rim = rim_of(coefficients, force)
+    history = history_at_touch(rubbing, coefficients, sphere.coefficient, rim)
+    march_resisted(rolling, history, time, force, fine[2], velocity, turning, friction, way, slid)
+    moved = np.zeros((number, 2))
+    slip = np.empty((number, 2))
+    for axis in range(2):
+        for point in range(number):
+            slip[point, axis] = velocity[point, axis] + turning[point, axis]
+            if point > 0:
+                mean = 0.5 * (time[point] - time[point - 1])
+                mean *= velocity[point, axis] + velocity[point - 1, axis]
+                moved[point, axis] = moved[point - 1, axis] + mean
+    spin = spins_about_normal(sphere, begun.spin_z, time, force, friction, slip)
+    microslip = lost_in_microslip(history, force, friction, way, slid)
+    return ResistedPath(time, moved, velocity, turning, spin, friction, microslip)
+
+
+@compiled(lambda t: t.of(SphereState)(t.of(RubbedSphere), t.of(SphereState), t.of(ResistedPath)))
+def resisted_end(sphere: RubbedSphere, begun: SphereState, path: ResistedPath) -> SphereState:
+    """Return the state of a sphere at the end of such a contact."""
+    last = len(path.time) - 1
+    return SphereState(
+        begun.x + path.moved[last, 0],
+        begun.y + path.moved[last, 1],
+        path.velocity[last, 0],
+        path.velocity[last, 1],
+        path.turning[last, 1] / sphere.radius,
+        -path.turning[last, 0] / sphere.radius,
+        path.spin[last],
+    )

@@ -20,22 +20,30 @@ from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.cubics import cubic_at
 from vibroimpact.dynamics.core.friction_records import (
+    HERTZ,
+    KAPPA,
+    RADIUS,
+    SPRING,
     Cubic,
     Curve,
     Friction,
     NormalState,
+    Rubbing,
     SlipState,
+)
+from vibroimpact.dynamics.core.normal_records import (
+    FORCE,
+    FORCE_SLOPE,
+    IMPULSE,
+    PACE,
+    PACE_SLOPE,
+    TIME,
+    NormalPath,
 )
 from vibroimpact.dynamics.core.sliding import MOST_CHANGES, advance_step, join, settle
 from vibroimpact.dynamics.core.sliding_steps import shortened, sliding_integral
 from vibroimpact.dynamics.core.slip_states import begin_sliding, least_rate, slides
-from vibroimpact.dynamics.core.turning_points import BELOW, RIM, add_rim
-
-TIME, PACE, PACE_SLOPE, FORCE, FORCE_SLOPE, IMPULSE = range(6)
-"""Rows of the normal motion of a contact."""
-
-HERTZ, SPRING, KAPPA, SLIP, MASS, PULL = range(6)
-"""Columns of what is known of a contact."""
+from vibroimpact.dynamics.core.turning_points import add_rim, new_curve
 
 VELOCITY, DISPLACEMENT, FRICTION_FORCE = range(3)
 """Rows of its sliding."""
@@ -295,86 +303,74 @@ def parts_of_step(friction: Friction, grid: Floats) -> int:
 
 
 @compiled(
-    lambda t: t.void(
-        t.real, t.real, t.boolean, t.real, t.real, t.matrix, t.cube, t.vector, t.cube, t.vector
-    )
+    lambda t: t.real(t.of(Rubbing), t.vector, t.real, t.real, t.real, t.of(NormalPath), t.matrix)
 )
-def slide_contacts(
-    growing: float,
-    shrinking: float,
-    at_rim: bool,
-    sliding_energy: float,
-    rounding: float,
-    contacts: Floats,
-    normals: Floats,
-    steps: Floats,
-    paths: Floats,
-    microslips: Floats,
-) -> None:
-    """Follow the sliding of B contacts, each on its own.
+def slide_elastically(
+    rubbing: Rubbing,
+    coefficients: Floats,
+    slip: float,
+    pull: float,
+    mass: float,
+    normal: NormalPath,
+    path: Floats,
+) -> float:
+    """Follow the sliding of a contact, and return the energy lost while a part of it sticks [J].
 
     Parameters
     ----------
-    growing, shrinking, at_rim, sliding_energy
-        See `Friction`.
-    rounding : float
-        Error of the rate of the depth at release, as a part of the largest.
-    contacts : array, shape (B, 6)
-        Of each: Hertz's stiffness [N/m^1.5]; 2 G* sqrt(R) [N/m^1.5]; kappa; slip velocity at first
-        touch [m/s]; effective mass of the tangential motion [kg]; acceleration along the direction
-        [m/s^2].
-    normals : array, shape (B, 6, G)
-        Normal motion; see `write_grid`.
-    steps : array, shape (G - 1,)
-        Of its parameter; 0 where two parts of a contact meet.
-    paths : array, shape (B, 3, G)
+    rubbing : Rubbing
+        The law.
+    coefficients : array, shape (5,)
+        Of it in this contact; see `friction_records`.
+    slip : float
+        Slip velocity at first touch [m/s].
+    pull : float
+        Acceleration along the direction [m/s^2].
+    mass : float
+        Effective mass of the tangential motion [kg].
+    normal : NormalPath
+        The normal motion.
+    path : array, shape (3, G)
         Room for slip velocities [m/s], displacements [m] and friction forces [N].
-    microslips : array, shape (B,)
-        Room for the energies lost while a part of the contact sticks [J].
     """
-    points = len(steps) + 1
+    rows = normal.rows
+    points = rows.shape[1]
+    largest = 0.0
+    for point in range(points):
+        largest = max(largest, rows[FORCE, point])
     grid = np.empty((points, 7))
-    # in each part of a step the rim is added once, and twice where the contact ceases to slip
-    curve = Curve(
-        np.empty((2 * (MOST_CHANGES + 2) * _MOST_PARTS * points, 3)), np.zeros(2, np.int64)
+    hertz = coefficients[HERTZ]
+    write_grid(rows, hertz, largest, grid)
+    duration = rows[TIME, points - 1]
+    deepest = (largest / hertz) ** (2.0 / 3.0)
+    scale = (abs(slip) + abs(pull) * duration) * duration / deepest
+    kappa = min(max(coefficients[KAPPA], _LEAST * scale), _MOST * scale)
+    if kappa == 0.0:
+        kappa = 1.0
+    # of the integral: none where friction is below the least
+    spring = 0.0
+    if not coefficients[KAPPA] < kappa:
+        spring = coefficients[SPRING] * math.sqrt(coefficients[RADIUS])
+    friction = Friction(
+        rubbing.growing,
+        rubbing.shrinking,
+        rubbing.at_rim,
+        rubbing.sliding_energy,
+        spring / mass,
+        pull / kappa,
     )
-    for number in range(len(contacts)):
-        contact = contacts[number]
-        normal = normals[number]
-        path = paths[number]
-        largest = 0.0
-        for point in range(points):
-            largest = max(largest, normal[FORCE, point])
-        write_grid(normal, contact[HERTZ], largest, grid)
-        duration = normal[TIME, points - 1]
-        deepest = (largest / contact[HERTZ]) ** (2.0 / 3.0)
-        scale = (abs(contact[SLIP]) + abs(contact[PULL]) * duration) * duration / deepest
-        kappa = min(max(contact[KAPPA], _LEAST * scale), _MOST * scale)
-        if kappa == 0.0:
-            kappa = 1.0
-        # of the integral: none where friction is below the least
-        spring = 0.0 if contact[KAPPA] < kappa else contact[SPRING]
-        friction = Friction(
-            growing,
-            shrinking,
-            at_rim,
-            sliding_energy,
-            spring / contact[MASS],
-            contact[PULL] / kappa,
-        )
-        write_slide(friction, grid, steps, contact[SLIP] / kappa, path)
-        microslips[number] = 0.0
-        if spring > 0.0:
-            first = first_point_to_stick(friction, grid, steps, rounding, path)
-            if first >= 0:
-                curve.points[:2] = 0.0
-                curve.top[RIM] = 0
-                curve.top[BELOW] = 0
-                lost = follow_slip(
-                    friction, curve, grid, steps, first, parts_of_step(friction, grid), path
-                )
-                microslips[number] = contact[MASS] * kappa * kappa * lost
-        for point in range(points):
-            path[VELOCITY, point] *= kappa
-            path[DISPLACEMENT, point] *= kappa
-            path[FRICTION_FORCE, point] *= spring * kappa
+    write_slide(friction, grid, normal.steps, slip / kappa, path)
+    microslip = 0.0
+    if spring > 0.0:
+        first = first_point_to_stick(friction, grid, normal.steps, rubbing.rounding, path)
+        if first >= 0:
+            parts = parts_of_step(friction, grid)
+            # in each part of a step the rim is added once, twice where the contact ceases to slip
+            curve = new_curve(2 * (MOST_CHANGES + 2) * parts * points)
+            lost = follow_slip(friction, curve, grid, normal.steps, first, parts, path)
+            microslip = mass * kappa * kappa * lost
+    for point in range(points):
+        path[VELOCITY, point] *= kappa
+        path[DISPLACEMENT, point] *= kappa
+        path[FRICTION_FORCE, point] *= spring * kappa
+    return microslip

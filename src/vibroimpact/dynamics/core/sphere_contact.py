@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.compiled import compiled, friction_at, slip_after_at
 from vibroimpact.dynamics.core.normal_records import (
     FORCE,
@@ -27,6 +27,7 @@ from vibroimpact.dynamics.core.normal_records import (
     PACE,
     PACE_SLOPE,
     TIME,
+    NormalPath,
 )
 from vibroimpact.dynamics.core.records import Real
 from vibroimpact.dynamics.core.sliding_paths import DISPLACEMENT, FRICTION_FORCE, VELOCITY
@@ -34,8 +35,8 @@ from vibroimpact.dynamics.core.sphere_records import (
     RubbedSphere,
     SphereState,
     length_of,
-    sphere_at,
-    state_at,
+    sphere_of,
+    state_of,
     tangential_mass,
     turning_of,
     twisting_of,
@@ -92,30 +93,6 @@ def first_slip(sphere: RubbedSphere, begun: SphereState) -> FirstSlip:
     return FirstSlip(direction_x, direction_y, speed, pull)
 
 
-@compiled(lambda t: t.of(FirstSlip)(t.matrix, t.integer))
-def slip_at(slips: Floats, number: int) -> FirstSlip:
-    """Return the first slip in a row of an array."""
-    row = slips[number]
-    return FirstSlip(row[0], row[1], row[2], row[3])
-
-
-@compiled(lambda t: t.void(t.matrix, t.matrix, t.matrix))
-def write_first_slips(spheres: Floats, states: Floats, slips: Floats) -> None:
-    """Write the slips of B spheres at first touch.
-
-    Parameters
-    ----------
-    spheres, states : array, shape (B, 8), (B, 7)
-        Of each the members of `RubbedSphere` and `SphereState`.
-    slips : array, shape (B, 4)
-        Room for those of `FirstSlip`.
-    """
-    for number in range(len(spheres)):
-        slip = first_slip(sphere_at(spheres, number), state_at(states, number))
-        for column in range(len(slip)):
-            slips[number, column] = slip[column]
-
-
 @compiled(lambda t: t.real(t.real, t.real, t.real, t.real, t.real))
 def integral_of_step(
     step: float, rate_before: float, rate: float, bend_before: float, bend: float
@@ -124,80 +101,62 @@ def integral_of_step(
     return step * (0.5 * (rate + rate_before) + (bend_before - bend) / 12.0)
 
 
-@compiled(lambda t: t.void(t.integers, t.matrix, t.matrix, t.vector, t.cube, t.vector, t.cube))
+@compiled(
+    lambda t: t.void(t.integers, t.vector, t.of(FirstSlip), t.real, t.of(NormalPath), t.matrix)
+)
 def slide_impulsively(
-    addresses: Floats,
+    addresses: Integers,
     coefficients: Floats,
-    slips: Floats,
-    masses: Floats,
-    normals: Floats,
-    steps: Floats,
-    paths: Floats,
+    slip: FirstSlip,
+    mass: float,
+    normal: NormalPath,
+    path: Floats,
 ) -> None:
-    """Follow the sliding of B contacts whose law has no tangential compliance.
+    """Follow the sliding of a contact whose law has no tangential compliance.
 
     Parameters
     ----------
-    addresses : array, shape (2,)
+    addresses : array of int, shape (2,)
         Of the functions of the law; see `compiled.law_addresses`.
-    coefficients : array, shape (B, K)
-        Of the law in each contact.
-    slips : array, shape (B, 4)
-        Of each the members of `FirstSlip`.
-    masses : array, shape (B,)
-        Effective masses of the tangential motion [kg].
-    normals : array, shape (B, 6, G)
-        Normal motion, in the rows of `normal_records`.
-    steps : array, shape (G - 1,)
-        Of its parameter; 0 where two parts of a contact meet.
-    paths : array, shape (B, 3, G)
+    coefficients : array, shape (K,)
+        Of the law.
+    slip : FirstSlip
+        The slip at first touch.
+    mass : float
+        Effective mass of the tangential motion [kg].
+    normal : NormalPath
+        The normal motion.
+    path : array, shape (3, G)
         Room for slip velocities [m/s], displacements [m] and friction forces [N].
     """
     slip_after = slip_after_at(addresses[0])
     friction = friction_at(addresses[1])
-    points = len(steps) + 1
-    for number in range(len(slips)):
-        slip = slip_at(slips, number)
-        normal = normals[number]
-        path = paths[number]
-        mass = masses[number]
-        whole = normal[IMPULSE, 0]
-        for point in range(points):
-            whole = max(whole, normal[IMPULSE, point])
-        # a force that pulls, as some laws have at the end, gives nothing back
-        pressed = normal[IMPULSE, 0]
-        displacement = 0.0
-        rate = 0.0
-        bend = 0.0
-        for point in range(points):
-            pressed = max(pressed, normal[IMPULSE, point])
-            free = slip.speed + slip.pull * normal[TIME, point]
-            velocity = slip_after(free, pressed, whole, mass, coefficients[number])
-            force = friction(velocity, normal[FORCE, point], coefficients[number])
-            pace = normal[PACE, point]
-            rate_before = rate
-            bend_before = bend
-            rate = pace * velocity
-            bend = normal[PACE_SLOPE, point] * velocity + pace * pace * (slip.pull - force / mass)
-            if point > 0:
-                displacement += integral_of_step(
-                    steps[point - 1], rate_before, rate, bend_before, bend
-                )
-            path[VELOCITY, point] = velocity
-            path[DISPLACEMENT, point] = displacement
-            path[FRICTION_FORCE, point] = force
-
-
-@compiled(lambda t: t.void(t.matrix, t.cube, t.cube))
-def slide_freely(slips: Floats, normals: Floats, paths: Floats) -> None:
-    """Follow the sliding of B contacts without friction; see `slide_impulsively`."""
-    for number in range(len(slips)):
-        slip = slip_at(slips, number)
-        for point in range(normals.shape[2]):
-            time = normals[number, TIME, point]
-            paths[number, VELOCITY, point] = slip.speed + slip.pull * time
-            paths[number, DISPLACEMENT, point] = (slip.speed + 0.5 * slip.pull * time) * time
-            paths[number, FRICTION_FORCE, point] = 0.0
+    rows = normal.rows
+    points = rows.shape[1]
+    whole = rows[IMPULSE, 0]
+    for point in range(points):
+        whole = max(whole, rows[IMPULSE, point])
+    # a force that pulls, as some laws have at the end, gives nothing back
+    pressed = rows[IMPULSE, 0]
+    displacement = 0.0
+    rate = 0.0
+    bend = 0.0
+    for point in range(points):
+        pressed = max(pressed, rows[IMPULSE, point])
+        free = slip.speed + slip.pull * rows[TIME, point]
+        velocity = slip_after(free, pressed, whole, mass, coefficients)
+        force = friction(velocity, rows[FORCE, point], coefficients)
+        pace = rows[PACE, point]
+        rate_before = rate
+        bend_before = bend
+        rate = pace * velocity
+        bend = rows[PACE_SLOPE, point] * velocity + pace * pace * (slip.pull - force / mass)
+        if point > 0:
+            step = normal.steps[point - 1]
+            displacement += integral_of_step(step, rate_before, rate, bend_before, bend)
+        path[VELOCITY, point] = velocity
+        path[DISPLACEMENT, point] = displacement
+        path[FRICTION_FORCE, point] = force
 
 
 @compiled(
@@ -267,16 +226,16 @@ def state_along(
     )
 
 
-@compiled(lambda t: t.real(t.of(FirstSlip), t.vector, t.matrix))
-def held_across(slip: FirstSlip, time: Floats, path: Floats) -> float:
+@compiled(lambda t: t.real(t.of(FirstSlip), t.of(NormalPath), t.matrix))
+def held_across(slip: FirstSlip, normal: NormalPath, path: Floats) -> float:
     """Return what friction takes across the slip, over gravity there [s].
 
-    `time`: since first touch [s] (G,). `path`: see `slide_impulsively`.
+    `normal`, `path`: of the contact; see `slide_impulsively`.
     """
     taken = 0.0
     remaining = 1.0  # by the end of the slip, of what is there at a point
-    for point in range(len(time) - 2, -1, -1):
-        elapsed = time[point + 1] - time[point]
+    for point in range(len(normal.steps) - 1, -1, -1):
+        elapsed = normal.rows[TIME, point + 1] - normal.rows[TIME, point]
         velocity = path[VELOCITY, point]
         slowed = 0.0
         if velocity > 0.0:
@@ -295,37 +254,38 @@ def between(start: float, end: float, share: float) -> float:
     return end if share == 1.0 else start + share * (end - start)
 
 
-@compiled(lambda t: t.real(t.of(RubbedSphere), t.real, t.matrix, t.vector, t.matrix))
-def twisted_back(
-    sphere: RubbedSphere, spin: float, normal: Floats, steps: Floats, path: Floats
-) -> float:
+@compiled(lambda t: t.real(t.of(RubbedSphere), t.real, t.of(NormalPath), t.matrix))
+def twisted_back(sphere: RubbedSphere, spin: float, normal: NormalPath, path: Floats) -> float:
     """Return the change of a spin about the normal by a contact [rad/s].
 
-    `normal`, `steps`, `path`: of the contact; see `slide_impulsively`.
+    `normal`, `path`: of the contact; see `slide_impulsively`.
     """
     twisting = twisting_of(sphere)
     if spin == 0.0 or twisting.coefficient * twisting.radius == 0.0:
         return 0.0
+    rows = normal.rows
     begun = abs(spin)
     kept = begun
     share = 0.0
     rate = 0.0
     bend = 0.0
-    for point in range(len(steps) + 1):
-        force = normal[FORCE, point]
+    for point in range(rows.shape[1]):
+        force = rows[FORCE, point]
         moment = full_moment(twisting, force) / sphere.inertia
         growth = 0.0
         if force > 0.0:
-            growth = (4.0 / 3.0) * moment * normal[FORCE_SLOPE, point] / force
+            growth = (4.0 / 3.0) * moment * rows[FORCE_SLOPE, point] / force
         rate_before = rate
         bend_before = bend
-        rate = normal[PACE, point] * moment
-        bend = normal[PACE_SLOPE, point] * moment + normal[PACE, point] * growth
+        rate = rows[PACE, point] * moment
+        bend = rows[PACE_SLOPE, point] * moment + rows[PACE, point] * growth
         if point == 0:
             friction = abs(path[FRICTION_FORCE, 0])
             share = moment_share(twisting, force, friction, abs(path[VELOCITY, 0]), kept)
             continue
-        full = integral_of_step(steps[point - 1], rate_before, rate, bend_before, bend) / _PARTS
+        full = (
+            integral_of_step(normal.steps[point - 1], rate_before, rate, bend_before, bend) / _PARTS
+        )
         for part in range(_PARTS):
             after = (part + 1) / _PARTS
             lost, share = slowed_spin(
@@ -333,7 +293,7 @@ def twisted_back(
                 kept,
                 full,
                 share,
-                between(normal[FORCE, point - 1], force, after),
+                between(rows[FORCE, point - 1], force, after),
                 between(
                     abs(path[FRICTION_FORCE, point - 1]), abs(path[FRICTION_FORCE, point]), after
                 ),
@@ -390,78 +350,56 @@ def rolling_change(
 
 
 @compiled(
-    lambda t: t.void(t.matrix, t.matrix, t.matrix, t.cube, t.vector, t.cube, t.matrix, t.matrix)
+    lambda t: t.of(Change)(
+        t.of(RubbedSphere), t.of(SphereState), t.of(FirstSlip), t.of(NormalPath), t.matrix
+    )
 )
-def end_contacts(
-    spheres: Floats,
-    states: Floats,
-    slips: Floats,
-    normals: Floats,
-    steps: Floats,
-    paths: Floats,
-    changes: Floats,
-    ends: Floats,
-) -> None:
-    """Write the ends of B contacts whose sliding is known.
+def change_beside(
+    sphere: RubbedSphere, begun: SphereState, slip: FirstSlip, normal: NormalPath, path: Floats
+) -> Change:
+    """Return what acts beside the friction along the slip changes by the end of a contact.
 
     Parameters
     ----------
-    spheres, states, slips : array, shape (B, 8), (B, 7), (B, 4)
-        Of each the members of `RubbedSphere`, `SphereState` and `FirstSlip`, at first touch.
-    normals, steps, paths : array, shape (B, 6, G), (G - 1,), (B, 3, G)
-        See `slide_impulsively`.
-    changes : array, shape (B, 5)
-        Room for the members of `Change`.
-    ends : array, shape (B, 7)
-        Room for the states at the end.
+    sphere : RubbedSphere
+        The sphere.
+    begun, slip : SphereState, FirstSlip
+        Its state and its slip at first touch.
+    normal, path : NormalPath, array
+        Of the contact; see `slide_impulsively`.
     """
-    last = len(steps)
-    for number in range(len(spheres)):
-        sphere = sphere_at(spheres, number)
-        begun = state_at(states, number)
-        slip = slip_at(slips, number)
-        normal = normals[number]
-        path = paths[number]
-        time = normal[TIME, last]
-        velocity = path[VELOCITY, last]
-        displacement = path[DISPLACEMENT, last]
-        mass = tangential_mass(sphere)
-        impulse_x = 0.0
-        impulse_y = 0.0
-        across_x = sphere.gravity_x - slip.pull * slip.direction_x
-        across_y = sphere.gravity_y - slip.pull * slip.direction_y
-        gravity = length_of(sphere.gravity_x, sphere.gravity_y)
-        if length_of(across_x, across_y) > _ACROSS * gravity:
-            held = mass * held_across(slip, normal[TIME], path)
-            impulse_x = held * across_x
-            impulse_y = held * across_y
-        turn = sphere.radius / sphere.inertia
-        change = Change(
-            impulse_x / sphere.mass,
-            impulse_y / sphere.mass,
-            turn * impulse_y,
-            -turn * impulse_x,
-            twisted_back(sphere, begun.spin_z, normal, steps, path),
-        )
-        after = state_along(sphere, begun, slip, change, time, velocity, displacement, 1.0)
-        rubbed = mass * abs(velocity - slip.speed - slip.pull * time)
-        faster_x, faster_y, spin_x, spin_y = rolling_change(
-            sphere, after, normal[IMPULSE, last], rubbed
-        )
-        change = Change(
-            change.velocity_x + faster_x,
-            change.velocity_y + faster_y,
-            change.spin_x + spin_x,
-            change.spin_y + spin_y,
-            change.spin_z,
-        )
-        for column in range(len(change)):
-            changes[number, column] = change[column]
-        write_state(
-            ends,
-            number,
-            state_along(sphere, begun, slip, change, time, velocity, displacement, 1.0),
-        )
+    last = len(normal.steps)
+    time = normal.rows[TIME, last]
+    velocity = path[VELOCITY, last]
+    mass = tangential_mass(sphere)
+    impulse_x = 0.0
+    impulse_y = 0.0
+    across_x = sphere.gravity_x - slip.pull * slip.direction_x
+    across_y = sphere.gravity_y - slip.pull * slip.direction_y
+    gravity = length_of(sphere.gravity_x, sphere.gravity_y)
+    if length_of(across_x, across_y) > _ACROSS * gravity:
+        held = mass * held_across(slip, normal, path)
+        impulse_x = held * across_x
+        impulse_y = held * across_y
+    turn = sphere.radius / sphere.inertia
+    change = Change(
+        impulse_x / sphere.mass,
+        impulse_y / sphere.mass,
+        turn * impulse_y,
+        -turn * impulse_x,
+        twisted_back(sphere, begun.spin_z, normal, path),
+    )
+    after = state_along(sphere, begun, slip, change, time, velocity, path[DISPLACEMENT, last], 1.0)
+    rubbed = mass * abs(velocity - slip.speed - slip.pull * time)
+    pressed = normal.rows[IMPULSE, last]
+    faster_x, faster_y, spin_x, spin_y = rolling_change(sphere, after, pressed, rubbed)
+    return Change(
+        change.velocity_x + faster_x,
+        change.velocity_y + faster_y,
+        change.spin_x + spin_x,
+        change.spin_y + spin_y,
+        change.spin_z,
+    )
 
 
 @compiled(
@@ -501,12 +439,39 @@ def write_states_along(
             displacements[point],
             time / duration,
         )
-        write_state(states, point, state)
+        write_state(states[point], state)
+
+
+@compiled(
+    lambda t: t.of(SphereState)(t.integers, t.vector, t.of(RubbedSphere), t.of(SphereState), t.real)
+)
+def struck(
+    addresses: Integers,
+    coefficients: Floats,
+    sphere: RubbedSphere,
+    begun: SphereState,
+    impulse: float,
+) -> SphereState:
+    """Return the state of a sphere after a normal impulse without duration [N s].
+
+    `addresses`, `coefficients`: of the friction law; see `slide_impulsively`. `begun`: the state
+    before.
+    """
+    slip_after = slip_after_at(addresses[0])
+    slip = first_slip(sphere, begun)
+    mass = tangential_mass(sphere)
+    velocity = slip_after(slip.speed, impulse, impulse, mass, coefficients)
+    still = Change(0.0, 0.0, 0.0, 0.0, 0.0)
+    after = state_along(sphere, begun, slip, still, 0.0, velocity, 0.0, 1.0)
+    rubbed = mass * abs(velocity - slip.speed)
+    faster_x, faster_y, spin_x, spin_y = rolling_change(sphere, after, impulse, rubbed)
+    change = Change(faster_x, faster_y, spin_x, spin_y, 0.0)
+    return state_along(sphere, begun, slip, change, 0.0, velocity, 0.0, 1.0)
 
 
 @compiled(lambda t: t.void(t.integers, t.matrix, t.matrix, t.matrix, t.vector, t.matrix))
 def strike(
-    addresses: Floats,
+    addresses: Integers,
     coefficients: Floats,
     spheres: Floats,
     states: Floats,
@@ -526,18 +491,8 @@ def strike(
     ends : array, shape (B, 7)
         Room for the states after them.
     """
-    slip_after = slip_after_at(addresses[0])
     for number in range(len(spheres)):
-        sphere = sphere_at(spheres, number)
-        begun = state_at(states, number)
-        slip = first_slip(sphere, begun)
-        impulse = impulses[number]
-        mass = tangential_mass(sphere)
-        velocity = slip_after(slip.speed, impulse, impulse, mass, coefficients[number])
-        still = Change(0.0, 0.0, 0.0, 0.0, 0.0)
-        after = state_along(sphere, begun, slip, still, 0.0, velocity, 0.0, 1.0)
-        rubbed = mass * abs(velocity - slip.speed)
-        faster_x, faster_y, spin_x, spin_y = rolling_change(sphere, after, impulse, rubbed)
-        change = Change(faster_x, faster_y, spin_x, spin_y, 0.0)
-        end = state_along(sphere, begun, slip, change, 0.0, velocity, 0.0, 1.0)
-        write_state(ends, number, end)
+        sphere = sphere_of(spheres[number])
+        begun = state_of(states[number])
+        end = struck(addresses, coefficients[number], sphere, begun, impulses[number])
+        write_state(ends[number], end)

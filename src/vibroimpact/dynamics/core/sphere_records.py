@@ -43,25 +43,23 @@ class SphereState(NamedTuple):
     spin_z: Real
 
 
-@compiled(lambda t: t.of(RubbedSphere)(t.matrix, t.integer))
-def sphere_at(spheres: Floats, number: int) -> RubbedSphere:
+@compiled(lambda t: t.of(RubbedSphere)(t.vector))
+def sphere_of(row: Floats) -> RubbedSphere:
     """Return the sphere in a row of an array."""
-    row = spheres[number]
     return RubbedSphere(row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7])
 
 
-@compiled(lambda t: t.of(SphereState)(t.matrix, t.integer))
-def state_at(states: Floats, number: int) -> SphereState:
+@compiled(lambda t: t.of(SphereState)(t.vector))
+def state_of(row: Floats) -> SphereState:
     """Return the state in a row of an array."""
-    row = states[number]
     return SphereState(row[0], row[1], row[2], row[3], row[4], row[5], row[6])
 
 
-@compiled(lambda t: t.void(t.matrix, t.integer, t.of(SphereState)))
-def write_state(states: Floats, number: int, state: SphereState) -> None:
+@compiled(lambda t: t.void(t.vector, t.of(SphereState)))
+def write_state(row: Floats, state: SphereState) -> None:
     """Write a state into a row of an array."""
     for column in range(len(state)):
-        states[number, column] = state[column]
+        row[column] = state[column]
 
 
 @compiled(lambda t: t.real(t.of(RubbedSphere)))
@@ -82,6 +80,36 @@ def turning_of(sphere: RubbedSphere, state: SphereState) -> tuple[float, float]:
 def length_of(x: float, y: float) -> float:
     """Return the length of a vector, alike to the last bit in compiled code and in Python."""
     return math.sqrt(x * x + y * y)
+
+
+@compiled(lambda t: t.of(SphereState)(t.of(RubbedSphere), t.of(SphereState), t.real))
+def flown(sphere: RubbedSphere, state: SphereState, elapsed: float) -> SphereState:
+    """Return the state after a time without contact [s]."""
+    return SphereState(
+        state.x + (state.velocity_x + 0.5 * sphere.gravity_x * elapsed) * elapsed,
+        state.y + (state.velocity_y + 0.5 * sphere.gravity_y * elapsed) * elapsed,
+        state.velocity_x + sphere.gravity_x * elapsed,
+        state.velocity_y + sphere.gravity_y * elapsed,
+        state.spin_x,
+        state.spin_y,
+        state.spin_z,
+    )
+
+
+@compiled(lambda t: t.real(t.of(RubbedSphere), t.of(SphereState)))
+def kinetic_of(sphere: RubbedSphere, state: SphereState) -> float:
+    """Return the kinetic energy of the motion along the plate and of the rotation [J]."""
+    square = state.velocity_x * state.velocity_x + state.velocity_y * state.velocity_y
+    turning = state.spin_x * state.spin_x + state.spin_y * state.spin_y
+    turning += state.spin_z * state.spin_z
+    return 0.5 * sphere.mass * square + 0.5 * sphere.inertia * turning
+
+
+@compiled(lambda t: t.real(t.of(RubbedSphere), t.of(SphereState), t.of(SphereState)))
+def energy_taken(sphere: RubbedSphere, before: SphereState, after: SphereState) -> float:
+    """Return the energy that friction takes between two states [J]."""
+    pulled = sphere.gravity_x * (after.x - before.x) + sphere.gravity_y * (after.y - before.y)
+    return kinetic_of(sphere, before) + sphere.mass * pulled - kinetic_of(sphere, after)
 
 
 @compiled(lambda t: t.of(Twisting)(t.of(RubbedSphere)))

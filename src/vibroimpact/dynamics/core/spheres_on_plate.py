@@ -27,8 +27,8 @@ from vibroimpact.dynamics.core.sphere_records import (
     RubbedSphere,
     SphereState,
     length_of,
-    sphere_at,
-    state_at,
+    sphere_of,
+    state_of,
     tangential_mass,
     twisting_of,
     write_state,
@@ -176,8 +176,8 @@ def lie_on_plate(
     stages = np.empty((STAGES + 1, 6))
     state = np.empty(8)
     for number in range(len(spheres)):
-        sphere = sphere_at(spheres, number)
-        begun = state_at(starts, number)
+        sphere = sphere_of(spheres[number])
+        begun = state_of(starts[number])
         until = times[number, times.shape[1] - 1]
         start = start_of(sphere, begun)
         lying = lying_sphere(sphere, pressing[number], start)
@@ -191,6 +191,6 @@ def lie_on_plate(
             write_at(lying, motion, time, stages, state)
             times[number, point] = time
             spin_z = np.sign(begun.spin_z) * spin_left(falling, time)
-            write_state(states[number], point, lying_state(sphere, state, spin_z))
+            write_state(states[number, point], lying_state(sphere, state, spin_z))
             friction[number, point, 0] = -mass * state[6]
             friction[number, point, 1] = -mass * state[7]

@@ -13,8 +13,8 @@ import math
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.drop_records import END_LEFT, FreeFall, StopRules
 
-AT_TIME, AFTER_IMPACTS = range(2)
-"""Kinds of rules; their values are a time [s], and a number of impacts."""
+AT_TIME, AFTER_IMPACTS, BESIDE_PLATE = range(3)
+"""Kinds of rules; their values are a time [s], a number of impacts, and none."""
 
 
 @compiled(lambda t: t.real(t.real, t.of(FreeFall)))
@@ -29,11 +29,19 @@ def end_after_impacts(number: float, flight: FreeFall, impacts: int) -> float:
     return min(flight.top, flight.touch) if impacts >= number else math.inf
 
 
+@compiled(lambda t: t.real(t.of(FreeFall)))
+def end_beside_plate(flight: FreeFall) -> float:
+    """Return the end of a run where a sphere beside the plate is level with its surface [s]."""
+    return flight.touch if flight.is_beside else math.inf
+
+
 @compiled(lambda t: t.real(t.integer, t.real, t.of(FreeFall), t.integer))
 def end_under(kind: int, value: float, flight: FreeFall, impacts: int) -> float:
     """Return when a rule of a kind ends a run [s]."""
     if kind == AT_TIME:
         return end_at_time(value, flight)
+    if kind == BESIDE_PLATE:
+        return end_beside_plate(flight)
     return end_after_impacts(value, flight, impacts)
 
 

@@ -51,6 +51,7 @@ _MOST_SHARE = 2.0
 """How far H is extended from the last piece of a curve, in lengths of it from its lower end."""
 
 
+@compiled(lambda t: t.of(Curve)(t.integer))
 def new_curve(room: int) -> Curve:
     """Return the curve of a contact before first touch: one point, with room for others.
 
@@ -66,7 +67,7 @@ def new_curve(room: int) -> Curve:
     >>> round(1.0 - 1.5 * held, 6), round(1 - (1 - 0.19) ** 1.5, 6)
     (0.271, 0.271)
     """
-    return Curve(np.zeros((room, 3)), np.zeros(2, dtype=np.int64))
+    return Curve(np.zeros((room, 3)), np.zeros(2, np.int64))
 
 
 @compiled(lambda t: t.void(t.of(Curve), t.integer, t.real, t.real, t.real))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from typing import Any
@@ -12,18 +10,16 @@ import numpy as np
 
 from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.compiled import interpreted, law_addresses
-from vibroimpact.contact.friction.law import CompliantFriction, ImpulsiveFriction
+from vibroimpact.contact.friction.law import ImpulsiveFriction
 from vibroimpact.contact.friction.laws.coulomb import Coulomb
 from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.dynamics.core.sphere_contact import strike
 from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.impact_conditions import ImpactConditions
 from vibroimpact.dynamics.law_coefficients import coefficients_of
 from vibroimpact.dynamics.oblique.lying import lie
-from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
-from vibroimpact.dynamics.oblique.resisted_contact import ResistedContact, resisted_contact
-from vibroimpact.dynamics.oblique.sliding import ObliqueContact, collide
+from vibroimpact.dynamics.oblique.rubbed_contact import RubbedContact
 from vibroimpact.dynamics.oblique.state import (
-    ContactAlong,
     ImpulseAlong,
     ObliqueContacts,
     Sphere,
@@ -35,19 +31,6 @@ from vibroimpact.dynamics.shaken.statement import PlateMotion
 
 _FEW = 200
 """Fewer impulses than these do not load the compiler."""
-
-# of each phase of a contact at the default tolerance: the slip velocity at its end is within 2e-4
-# of that at first touch
-_STEPS = 16
-_DEFAULT_TOLERANCE = 1e-9
-_ORDER = 4  # of the error, in the steps
-_ROUNDING = 1e-9
-
-
-def friction_steps(tolerance: float) -> int:
-    """Return the number of steps of friction in each phase of a contact."""
-    finer: float = (_DEFAULT_TOLERANCE / tolerance) ** (1.0 / _ORDER)
-    return _STEPS * max(math.ceil(finer - _ROUNDING), 1)
 
 
 class ObliqueMotion:
@@ -61,6 +44,8 @@ class ObliqueMotion:
         Of the spheres [kg], [m], [kg m^2].
     motion : PlateMotion or None
         Of the plate.
+    tolerance : float
+        Relative error allowed.
     """
 
     def __init__(
@@ -70,6 +55,7 @@ class ObliqueMotion:
         radius: Floats,
         inertia: Floats,
         motion: PlateMotion | None,
+        tolerance: float,
     ) -> None:
         def spread(values: Any) -> Floats:
             return np.array(
@@ -88,6 +74,7 @@ class ObliqueMotion:
             np.zeros(len(mass)),
         )
         self.motion = motion
+        self.tolerance = tolerance
 
     def fly(self, drops: Drops, flight: Flight, time: Floats) -> None:
         """Advance drops through their flights up to a time [s]."""
@@ -165,51 +152,23 @@ class ObliqueMotion:
         return np.asarray(np.isfinite(time) & (np.abs(place) > self.half).any(axis=0))
 
     def collide(
-        self, drops: Drops, motions: Sequence[tuple[Drops, NormalMotion]], row: dict[str, Floats]
+        self,
+        drops: Drops,
+        conditions: ImpactConditions,
+        duration: Floats,
+        row: dict[str, Floats],
     ) -> ObliqueContacts:
-        """Advance drops through a contact, write its columns, and return the motion in it.
+        """Advance drops through contacts of rigid bodies, write their columns, and return the
+        motion in them.
 
-        `motions`: normal motions of groups of the drops, with their places among these.
+        `conditions`: the impacts of these drops. `duration`: of their contacts [s].
         """
-        found: list[tuple[Drops, ContactAlong]] = []
-        for places, normal in motions:
-            resisted = self._resists_rolling(drops[places])
-            for one in np.flatnonzero(resisted).tolist():
-                place = places[one : one + 1]
-                found.append((place, self._march(drops[place], normal.take(np.array([one])), row)))
-            free = np.flatnonzero(~resisted)
-            if free.size:
-                motion = normal.take(free) if resisted.any() else normal
-                found.append((places[free], self._collide(drops[places[free]], motion, row)))
-        return tuple(found)
-
-    def _resists_rolling(self, drops: Drops) -> Bools:
-        """Return of which drops rolling is resisted while friction is elastic, so that
-        both have to be followed together.
-        """
-        if not isinstance(self.law, CompliantFriction):
-            return np.zeros(len(drops), dtype=bool)
-        return np.broadcast_to(self.law.rolling_coefficient, self.lost.shape)[drops] > 0.0
-
-    def _march(self, drops: Drops, normal: NormalMotion, row: dict[str, Floats]) -> ResistedContact:
-        assert isinstance(self.law, CompliantFriction)
-        sphere, before = self.now(drops)
-        contact = resisted_contact(self.law.take(int(drops[0])), normal, sphere, before)
-        self.finish(
-            drops, contact.end, energy_taken(sphere, before, contact.end), contact.microslip, row
-        )
-        return contact
-
-    def _collide(
-        self, drops: Drops, normal: NormalMotion, row: dict[str, Floats]
-    ) -> ObliqueContact:
         sphere, before = self.now(drops)
         law = self.law if self.law is None or len(drops) == len(self.lost) else self.law.take(drops)
-        contact = collide(law, normal, sphere, before)
-        self.finish(
-            drops, contact.end, energy_taken(sphere, before, contact.end), contact.microslip, row
-        )
-        return contact
+        contact = RubbedContact(conditions, self.tolerance, law, sphere, before, duration)
+        end, microslip = contact.ends()
+        self.finish(drops, end, energy_taken(sphere, before, end), microslip, row)
+        return ((np.arange(len(drops)), contact),)
 
     def collide_at_once(
         self, drops: Drops, time: Floats, impulse: Floats, row: dict[str, Floats]
@@ -287,9 +246,3 @@ class ObliqueMotion:
         """
         fallen = (self.sphere.gravity * (self.state.position - self.start)).sum(axis=0)
         return *self.sphere.kinetic(self.state), -self.sphere.mass * fallen
-
-    def friction_parts(self) -> dict[str, Floats]:
-        """Return the two parts of the energy that friction took so far [J]; see
-        `FRICTION_PARTS`.
-        """
-        return {"microslip_J": self.microslip, "gross_slip_J": self.lost - self.microslip}

@@ -104,6 +104,14 @@ def energy_taken(sphere: Sphere, before: State, after: State) -> Floats:
     return np.asarray(sum(sphere.kinetic(before)) + work - sum(sphere.kinetic(after)))
 
 
+def friction_parts(lost: Floats, microslip: Floats) -> dict[str, Floats]:
+    """Return the two parts of the energy that friction took [J]; see `FRICTION_PARTS`.
+
+    `lost`: of both. `microslip`: while a part of the contact stuck.
+    """
+    return {"microslip_J": microslip, "gross_slip_J": lost - microslip}
+
+
 def state_after(
     sphere: Sphere,
     before: State,

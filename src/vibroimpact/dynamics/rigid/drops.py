@@ -1,4 +1,4 @@
-"""Drops of rigid bodies along the normal, which the core follows from start to end."""
+"""Drops of rigid bodies on a plate that does not move, which the core follows from start to end."""
 
 from __future__ import annotations
 
@@ -10,25 +10,39 @@ import numpy as np
 
 from vibroimpact.arrays import Drops as Indices
 from vibroimpact.arrays import Floats
-from vibroimpact.compiled import law_addresses
-from vibroimpact.contact.law import CompliantLaw, ContactLaw
-from vibroimpact.dynamics.columns import IMPACT_COLUMNS
+from vibroimpact.compiled import interpreted
+from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
+from vibroimpact.dynamics.columns import IMPACT_COLUMNS, OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core import stop_rules
-from vibroimpact.dynamics.core.drop_records import DropManner, Drops, StopRules
+from vibroimpact.dynamics.core.drop_records import DropManner, Drops, ObliqueDrops, StopRules
 from vibroimpact.dynamics.core.drops import follow_drops
+from vibroimpact.dynamics.core.line_records import ContactManner
+from vibroimpact.dynamics.core.oblique_drops import follow_oblique_drops
+from vibroimpact.dynamics.core.sphere_records import SphereState
 from vibroimpact.dynamics.energy import close_ledger, ledger_holds
 from vibroimpact.dynamics.law_coefficients import coefficients_of
+from vibroimpact.dynamics.oblique.lying import lie
+from vibroimpact.dynamics.oblique.rubbed_contact import (
+    friction_coefficients,
+    friction_steps,
+    rubbing_of,
+)
+from vibroimpact.dynamics.oblique.state import State, energy_taken, friction_parts
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
 from vibroimpact.dynamics.progress import fraction_done
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.rest import Rest
-from vibroimpact.dynamics.rigid.line_contact import collocates, common_manner, gauss_rules
-from vibroimpact.dynamics.rigid.phase_rules import normal_grid
-from vibroimpact.dynamics.rigid.recorded_drops import RecordedDrops
+from vibroimpact.dynamics.rigid.line_contact import NO_CONTACTS, contact_manner
+from vibroimpact.dynamics.rigid.recorded_drops import RecordedDrops, Start, spheres_of
 
 _FIRST_ROOM = 8  # impacts of a drop; the room doubles
+_FEW = 200
+"""Fewer impacts than these without a force take less time in plain Python than numba takes to load.
+"""
+
+_UNTIL_REST = 50  # about so many impacts of a drop
 
 _OUTCOMES = np.array([Outcome(ending).code for ending in records.ENDINGS])
 """Codes of outcomes by the numbers of endings."""
@@ -44,21 +58,27 @@ def follow(
     Parameters
     ----------
     problem : Problem
-        Of rigid bodies at rest, whose spheres fall along the normal under a law with a force.
+        Of rigid bodies, which meet in a vacuum on a plate that does not move.
     progress : callable, optional
         Called after each impact with the fraction done, in [0, 1].
     keeps_bounces : bool
         Are flights and contacts kept, from which histories are read?
     """
     with ExitStack() as held:  # laws of other packages, which the core calls
+        if _is_quick(problem):
+            held.enter_context(interpreted())
         drops = _at_start(problem, held)
+        oblique = _along_at_start(problem, held)
         manner = _manner_of(problem)
-        energy_in = _mechanical_energy(drops.state.T)
-        start = drops.state[:, [records.GAP, records.VELOCITY]]
+        start = _start_of(drops, oblique)
+        energy_in = _energy_of(problem, drops, start)
         while True:
             room = drops.rows.shape[1]
             pause = room if progress is None else min(int(drops.impacts.max()) + 1, room)
-            follow_drops(manner, drops, pause)
+            if oblique is None:
+                follow_drops(manner, drops, pause)
+            else:
+                follow_oblique_drops(manner, drops, oblique, pause)
             if progress is not None:
                 progress(_fraction_done(problem, drops))
             moving = drops.phases < 0
@@ -68,7 +88,15 @@ def follow(
                 drops = _with_more_room(drops)
             if manner.waits:
                 _take_laws_at_touch(problem, drops, held)
-    return _response_of(problem, drops, energy_in, start if keeps_bounces else None)
+    return _response_of(problem, drops, oblique, energy_in, start if keeps_bounces else None)
+
+
+def _is_quick(problem: Problem) -> bool:
+    """Are the drops of a problem computed sooner than the compiler is loaded?"""
+    if not isinstance(problem.laws[0], InstantaneousLaw):
+        return False
+    size = math.prod(problem.shape)
+    return size == 1 or size * (problem.impacts or _UNTIL_REST) < _FEW
 
 
 def _at_start(problem: Problem, held: ExitStack) -> Drops:
@@ -86,11 +114,14 @@ def _at_start(problem: Problem, held: ExitStack) -> Drops:
     else:
         state[:, records.GAP] = problem.height - state[:, records.RADIUS]
         state[:, records.VELOCITY] = problem.velocity
-    laws = np.stack(
-        [held.enter_context(coefficients_of(law, size)) for law in _laws(problem)], axis=1
-    )
+    laws = np.zeros((size, 1, 1))
+    if isinstance(problem.laws[0], CompliantLaw):
+        laws = np.stack(
+            [held.enter_context(coefficients_of(law, size)) for law in _laws(problem)], axis=1
+        )
     room = min(problem.impacts or MOST_IMPACTS, _FIRST_ROOM)
-    rows = np.full((size, room, records.COLUMNS), np.nan)
+    columns = records.COLUMNS if problem.oblique is None else records.OBLIQUE_COLUMNS
+    rows = np.full((size, room, columns), np.nan)
     return Drops(
         phases=np.full(size, records.AT_START),
         impacts=np.zeros(size, dtype=np.int64),
@@ -100,6 +131,28 @@ def _at_start(problem: Problem, held: ExitStack) -> Drops:
         laws=laws,
         at_touch=np.zeros(laws[:, 0].shape),
         coefficients=np.zeros(laws[:, 0].shape),
+    )
+
+
+def _along_at_start(problem: Problem, held: ExitStack) -> ObliqueDrops | None:
+    """Return what the drops of a problem have at their start that move along the plate."""
+    oblique = problem.oblique
+    if oblique is None:
+        return None
+    size = math.prod(problem.shape)
+    law = oblique.friction
+    along = np.empty((size, len(SphereState._fields)))
+    for column, value in enumerate([*oblique.position, *oblique.velocity, *oblique.spin]):
+        along[:, column] = value
+    half_x, half_y = _half_sides(problem)
+    return ObliqueDrops(
+        rubbing=rubbing_of(law),
+        half_x=half_x,
+        half_y=half_y,
+        spheres=spheres_of(problem).rows(law),
+        along=along,
+        friction=held.enter_context(friction_coefficients(law, size)),
+        taken=np.zeros((size, 2)),
     )
 
 
@@ -116,18 +169,33 @@ def _laws(problem: Problem) -> list[ContactLaw]:
 
 def _manner_of(problem: Problem) -> DropManner:
     """Return what stays the same for all drops of a problem."""
-    law = problem.laws[0]
-    assert isinstance(law, CompliantLaw)
+    has_force = isinstance(problem.laws[0], CompliantLaw)
     return DropManner(
-        manner=common_manner(law, problem.tolerance),
-        rules=gauss_rules(law, problem.tolerance),
-        grid=normal_grid(0),
-        collocates=collocates(law, problem.tolerance),
-        addresses=law_addresses(type(law)),
+        contacts=_contact_manner(problem),
+        has_force=has_force,
         lasts=problem.memory_lasts,
-        waits=bool(problem.by_speed),
+        waits=bool(problem.by_speed) or not has_force,
         stops=_stop_rules(problem),
     )
+
+
+def _half_sides(problem: Problem) -> tuple[float, float]:
+    """Return half the sides of the plate [m], infinite where it has no edges."""
+    if problem.oblique is None or problem.oblique.size is None:
+        return np.inf, np.inf
+    length, width = problem.oblique.size
+    return 0.5 * length, 0.5 * width
+
+
+def _contact_manner(problem: Problem) -> ContactManner:
+    """Return how the contacts of a problem are solved; of a law without a force there are none."""
+    law = problem.laws[0]
+    if not isinstance(law, CompliantLaw):
+        return NO_CONTACTS
+    steps = 0
+    if problem.oblique is not None and problem.oblique.friction is not None:
+        steps = friction_steps(problem.tolerance)
+    return contact_manner(law, problem.tolerance, steps)
 
 
 def _stop_rules(problem: Problem) -> StopRules:
@@ -139,20 +207,30 @@ def _stop_rules(problem: Problem) -> StopRules:
         rules.append((stop_rules.AFTER_IMPACTS, problem.impacts, records.END_BY_IMPACTS))
     else:
         rules.append((stop_rules.AFTER_IMPACTS, MOST_IMPACTS, records.END_AT_LIMIT))
+    if problem.oblique is not None:
+        rules.append((stop_rules.BESIDE_PLATE, 0.0, records.END_BESIDE))
     kinds, values, endings = zip(*rules, strict=True)
     return StopRules(np.array(kinds), np.array(values, dtype=float), np.array(endings))
 
 
 def _take_laws_at_touch(problem: Problem, drops: Drops, held: ExitStack) -> None:
-    """Give drops that wait at their touch the coefficients of the law at their approach speed."""
+    """Give drops that wait at their touch what the law is at their approach speed.
+
+    That is its coefficients, or the separation speed where it has no force.
+    """
     touching = np.flatnonzero(drops.phases == records.AT_TOUCH)
     if not touching.size:
         return
     number = int(drops.impacts[touching[0]])  # the same of all that move
     speed = drops.state[touching, records.CLOSING]
     law = _law_at(problem, number, touching, speed)
-    drops.at_touch[touching] = held.enter_context(coefficients_of(law, len(touching)))
-    drops.rows[touching, number, records.ASKED] = law.nominal_restitution
+    if isinstance(law, InstantaneousLaw):
+        separation = law.separation_speed(speed, drops.state[touching, records.MASS])
+        drops.at_touch[touching, 0] = separation
+    else:
+        drops.at_touch[touching] = held.enter_context(coefficients_of(law, len(touching)))
+    if problem.by_speed:
+        drops.rows[touching, number, records.ASKED] = law.nominal_restitution
 
 
 def _law_at(problem: Problem, number: int, drops: Indices, speed: Floats) -> ContactLaw:
@@ -185,27 +263,50 @@ def _fraction_done(problem: Problem, drops: Drops) -> float:
     )
 
 
-def _mechanical_energy(state: Floats) -> Floats:
-    """Return the kinetic and potential energy of drops [J]."""
+def _start_of(drops: Drops, oblique: ObliqueDrops | None) -> Start:
+    """Return drops as they are at their start."""
+    along = np.zeros((len(drops.phases), 0))
+    if oblique is not None:
+        along = oblique.along.copy()
+    return Start(drops.state[:, [records.GAP, records.VELOCITY]], along)
+
+
+def _energy_of(problem: Problem, drops: Drops, start: Start) -> Floats:
+    """Return the kinetic and potential energy of drops at their start [J]."""
+    state = drops.state.T
     velocity = state[records.VELOCITY]
     potential = state[records.GRAVITY] * state[records.GAP]
-    return np.asarray(state[records.MASS] * (0.5 * velocity**2 + potential))
+    energy = np.asarray(state[records.MASS] * (0.5 * velocity**2 + potential))
+    if problem.oblique is None:
+        return energy
+    kinetic, rotation = spheres_of(problem).kinetic(State.of_rows(start.along))
+    return np.asarray(energy + kinetic + rotation)
 
 
 def _response_of(
-    problem: Problem, drops: Drops, energy_in: Floats, start: Floats | None
+    problem: Problem,
+    drops: Drops,
+    oblique: ObliqueDrops | None,
+    energy_in: Floats,
+    start: Start | None,
 ) -> Response:
     """Return the response of drops that have ended.
 
-    `start`: gaps [m] and upward velocities [m/s] at the start, where bounces are kept.
+    `start`: the drops at their start, where bounces are kept.
     """
     state = drops.state.T.copy()  # which all that is told of the drops holds
     end_time = state[records.END_TIME]
     at_rest = _AT_REST[drops.phases]
     if problem.duration is not None:
         end_time[at_rest] = np.maximum(end_time, problem.duration)[at_rest]
-    energy, added = _ledger(state, energy_in, at_rest)
+    along: dict[str, Floats] = {}
+    if oblique is not None:
+        _lie(problem, drops, oblique, end_time)
+        along = _entries_along(problem, oblique)
+    energy, added = _ledger(state, energy_in, at_rest, along)
     holds = ledger_holds(energy, added)
+    if oblique is not None:
+        energy |= friction_parts(*oblique.taken.T)
     codes = np.where(holds, _OUTCOMES[drops.phases], Outcome.FAILED.code)
     size = len(codes)
     rest = Rest(
@@ -224,6 +325,45 @@ def _response_of(
     return Response(problem, _table(problem, drops), energy, outcomes, end_time, rest, bounces)
 
 
+def _lie(problem: Problem, drops: Drops, oblique: ObliqueDrops, end_time: Floats) -> None:
+    """Let drops at rest lie on the plate until their runs end [s], or they leave it over an edge,
+    with which their runs end.
+    """
+    resting = np.flatnonzero(_AT_REST[drops.phases])
+    if not resting.size:
+        return
+    assert problem.oblique is not None
+    time = drops.state[resting, records.TIME]
+    sphere = spheres_of(problem).take(resting)
+    before = State.of_rows(oblique.along[resting])
+    friction = problem.oblique.friction
+    law = None if friction is None else friction.take(resting)
+    elapsed = np.maximum(end_time[resting] - time, 0.0)
+    pressing = drops.state[resting, records.GRAVITY]
+    half = _half_sides(problem)
+    after, _, times = lie(sphere, before, law, pressing, elapsed[:, None], half)
+    oblique.taken[resting, records.RUBBED] += energy_taken(sphere, before, after)
+    oblique.along[resting] = after.rows
+    end_time[resting] = np.minimum(end_time[resting], time + times[:, 0])
+
+
+def _entries_along(problem: Problem, oblique: ObliqueDrops) -> dict[str, Floats]:
+    """Return what the motion along the plate adds to the energy ledger [J]."""
+    assert problem.oblique is not None
+    sphere = spheres_of(problem)
+    state = State.of_rows(oblique.along)
+    kinetic, rotation = sphere.kinetic(state)
+    none = np.zeros(len(kinetic))
+    place = np.array([value + none for value in problem.oblique.position])
+    fallen = (sphere.gravity * (state.position - place)).sum(axis=0)
+    return {
+        "kinetic_J": kinetic,
+        "potential_J": -sphere.mass * fallen,
+        "rotation_J": rotation,
+        "friction_J": oblique.taken[:, records.RUBBED],
+    }
+
+
 def _table(problem: Problem, drops: Drops) -> dict[str, Floats]:
     """Return the columns of the impact table, (B, impacts)."""
     most = int(drops.impacts.max())
@@ -233,13 +373,20 @@ def _table(problem: Problem, drops: Drops) -> dict[str, Floats]:
         for number, law in enumerate(problem.laws):
             asked = np.reshape(law.nominal_restitution, (-1, 1))
             table[records.ASKED, :, number:] = np.where(happened[:, number:], asked, np.nan)
-    return dict(zip(IMPACT_COLUMNS, table, strict=True))
+    columns = dict(zip(IMPACT_COLUMNS, table, strict=True))
+    if problem.oblique is not None:
+        last = records.ALONG + len(OBLIQUE_IMPACT_COLUMNS)
+        along = drops.rows[:, :most, records.ALONG : last].transpose(2, 0, 1).copy()
+        columns |= dict(zip(OBLIQUE_IMPACT_COLUMNS, along, strict=True))
+    return columns
 
 
-def _ledger(state: Floats, energy_in: Floats, at_rest: Floats) -> tuple[dict[str, Floats], Floats]:
+def _ledger(
+    state: Floats, energy_in: Floats, at_rest: Floats, along: dict[str, Floats]
+) -> tuple[dict[str, Floats], Floats]:
     """Return the energy ledger [J], and the energy that gravity and adhesion added [J].
 
-    It was added to that of the start.
+    It was added to that of the start. `along`: the entries of the motion along the plate.
     """
     mass = state[records.MASS]
     gravity = state[records.GRAVITY]
@@ -256,4 +403,8 @@ def _ledger(state: Floats, energy_in: Floats, at_rest: Floats) -> tuple[dict[str
         "plastic_work_J": state[records.PLASTIC],
         "written_off_at_rest_J": state[records.WRITTEN_OFF],
     }
+    if along:
+        added += np.maximum(-along["potential_J"], 0.0)  # what gravity did down the plate
+    for name, values in along.items():
+        entries[name] = entries[name] + values if name in entries else values
     return close_ledger(energy_in, added, entries), added

@@ -11,14 +11,14 @@ import numpy as np
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.compiled import interpreted, law_addresses, law_coefficients
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, Contact, NormalRecords, Piece
+from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, Contact, Piece
 from vibroimpact.dynamics.core import line_records as records
 from vibroimpact.dynamics.core.events import ENDS, TENSIONS
 from vibroimpact.dynamics.core.law import law_at_touch
 from vibroimpact.dynamics.core.line import follow_line
 from vibroimpact.dynamics.core.line_step import BY_ROOT, FREE
 from vibroimpact.dynamics.core.lines import follow_lines, read_line, time_line
-from vibroimpact.dynamics.core.normal_records import MOTION_ROWS
+from vibroimpact.dynamics.core.normal_records import NormalGrid
 from vibroimpact.dynamics.core.phase_contact import collocate_contact
 from vibroimpact.dynamics.core.phase_records import ROWS, PhaseRules
 from vibroimpact.dynamics.core.records import Law
@@ -32,7 +32,6 @@ FEW = 5
 """Number of contacts: fewer take less time in plain Python than numba takes to load."""
 
 _ROOM = 200  # steps of a contact, at first
-_SEGMENTS = 2  # of a contact, at first
 _PARTS = 4  # of a step in a history
 _TIGHTEST = 1e-11  # a smaller tolerance is too close to rounding for collocation
 # at a larger one, which costs hardly less, the largest force would be less exact than it is taken
@@ -43,9 +42,38 @@ _OF_STEP = 0.01  # of the tolerance: error of a step, of which a contact has som
 _LEAST_ERROR = 1e-14
 _ON_CORNER = 1e-9  # of the duration
 
+NO_CONTACTS = records.ContactManner(
+    manner=records.LineManner(2, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0),
+    rules=PhaseRules(
+        tolerance=0.0,
+        roughness=0.0,
+        roughness_inside=0.0,
+        sharper=0.0,
+        root=2,
+        counts=np.zeros(0, dtype=np.int64),
+        vectors=np.zeros((0, 0, 0)),
+        matrices=np.zeros((0, 0, 0)),
+        onward=np.zeros((0, 0, 0)),
+    ),
+    grid=NormalGrid(
+        steps=0,
+        derivatives=np.zeros((0, 0, 0)),
+        values=np.zeros((0, 0, 0)),
+        integrals=np.zeros((0, 0, 0)),
+        own=np.zeros((0, 0, 0)),
+        room=np.zeros((0, 0)),
+        motion=np.zeros((0, 0)),
+        parameter=np.zeros(0),
+        points=np.zeros(1, dtype=np.int64),
+    ),
+    collocates=False,
+    addresses=np.zeros(4, dtype=np.int64),
+)
+"""What takes the place of the contacts of a law without a force."""
+
 
 def follow_contacts(
-    conditions: ImpactConditions, tolerance: float, friction_steps: int = 0
+    conditions: ImpactConditions, tolerance: float
 ) -> tuple[Contact, Floats, Floats]:
     """Return the contacts of B drops, their largest forces [N], and the times of these [s].
 
@@ -57,23 +85,51 @@ def follow_contacts(
         The impact: law, mass, gravity, approach speed.
     tolerance : float
         Relative error allowed.
-    friction_steps : int
-        Of the normal motion in each segment of a contact, if it drives friction.
     """
-    contacts = _solve(conditions, tolerance, friction_steps)
+    size = len(conditions.mass)
+    contacts = records.LineContacts(np.zeros(size, dtype=np.int64), np.zeros((10, size)))
+    with coefficients_of(conditions.law, size) as coefficients:
+        manner = contact_manner(conditions.law, tolerance)
+        follow_lines(manner, coefficients, touches_of(conditions), contacts)
     peak_force, time_of_peak = contacts.ends[6:8]
-    return contact_of(conditions, tolerance, contacts, friction_steps), peak_force, time_of_peak
+    return contact_of(conditions, tolerance, contacts), peak_force, time_of_peak
+
+
+def touches_of(conditions: ImpactConditions) -> Floats:
+    """Return the bodies of B impacts as they touch (5, B), as `follow_lines` takes them."""
+    return np.array(
+        [
+            conditions.mass,
+            conditions.gravity,
+            conditions.approach_speed,
+            conditions.depth,
+            conditions.speed_scale,
+        ]
+    )
+
+
+def contact_manner(
+    law: CompliantLaw, tolerance: float, friction_steps: int = 0
+) -> records.ContactManner:
+    """Return how contacts under a law are solved.
+
+    `friction_steps`: of the normal motion in each segment of a contact, if it drives friction.
+    """
+    return records.ContactManner(
+        manner=_common_manner(law, tolerance),
+        rules=gauss_rules(law, tolerance),
+        grid=normal_grid(friction_steps),
+        collocates=collocates(law, tolerance),
+        addresses=law_addresses(type(law)),
+    )
 
 
 def contact_of(
-    conditions: ImpactConditions,
-    tolerance: float,
-    contacts: records.LineContacts,
-    friction_steps: int = 0,
+    conditions: ImpactConditions, tolerance: float, contacts: records.LineContacts
 ) -> Contact:
     """Return the contacts of B drops that the core has solved.
 
-    `conditions`, `tolerance`, `friction_steps`: as for `follow_contacts`.
+    `conditions`, `tolerance`: as for `follow_contacts`.
     """
     (
         duration,
@@ -101,9 +157,6 @@ def contact_of(
             (duration - time_of_deepest)[rebounding],
         )
         pieces.append(Piece(rebounding, time_of_deepest[rebounding], restitution, law_after))
-    normals = None
-    if friction_steps:
-        normals = NormalRecords(friction_steps, contacts.shapes, contacts.begins, contacts.motions)
     return Contact(
         pieces=pieces,
         outcome=_OUTCOMES[contacts.outcomes],
@@ -116,49 +169,7 @@ def contact_of(
         plastic=plastic,
         stored=stored,
         law=law_after,
-        normals=normals,
     )
-
-
-def _solve(
-    conditions: ImpactConditions, tolerance: float, friction_steps: int
-) -> records.LineContacts:
-    """Return the contacts of B drops as the core solves them."""
-    law = conditions.law
-    size = len(conditions.mass)
-    touches = np.array(
-        [
-            conditions.mass,
-            conditions.gravity,
-            conditions.approach_speed,
-            conditions.depth,
-            conditions.speed_scale,
-        ]
-    )
-    contacts = _empty_contacts(size, friction_steps)
-    solved = 0
-    written = 0
-    with coefficients_of(law, size) as coefficients:
-        grid = normal_grid(friction_steps)
-        while True:
-            solved, written = follow_lines(
-                _manner(conditions, 0, tolerance),
-                gauss_rules(law, tolerance),
-                grid,
-                collocates(law, tolerance),
-                law_addresses(type(law)),
-                coefficients,
-                touches,
-                contacts,
-                solved,
-                written,
-            )
-            if solved == size:
-                return contacts
-            # there is no room for further normal motions
-            contacts = contacts._replace(
-                motions=np.append(contacts.motions, np.empty_like(contacts.motions))
-            )
 
 
 def release_rates(conditions: ImpactConditions, tolerance: float) -> Floats:
@@ -206,6 +217,16 @@ def _collocated_rate(conditions: ImpactConditions, tolerance: float) -> float:
     return float(contact.end.rate) if solved else np.nan
 
 
+def law_and_bodies(
+    held: CompliantLaw, conditions: ImpactConditions, tolerance: float
+) -> tuple[Law, records.LineManner]:
+    """Return the contact law and the bodies of one drop as the core takes them.
+
+    `held`: the law of the drop, which is kept as long as they are used.
+    """
+    return _law_at_touch(held, conditions), _manner(conditions, 0, tolerance)
+
+
 def _law_at_touch(law: CompliantLaw, conditions: ImpactConditions) -> Law:
     """Return the law of one drop as the core takes it."""
     return law_at_touch(
@@ -224,21 +245,6 @@ def collocates(law: CompliantLaw, tolerance: float) -> bool:
 def gauss_rules(law: CompliantLaw, tolerance: float) -> PhaseRules:
     """Return the Gauss rules of the collocation."""
     return phase_rules(law.root, min(max(tolerance, _TIGHTEST), _LOOSEST))
-
-
-def _empty_contacts(size: int, friction_steps: int) -> records.LineContacts:
-    """Return arrays for the contacts of B drops.
-
-    They have room for normal motions with some steps in each segment, if any.
-    """
-    with_motions = size if friction_steps else 0
-    return records.LineContacts(
-        outcomes=np.zeros(size, dtype=np.int64),
-        ends=np.zeros((10, size)),
-        shapes=np.zeros(with_motions, dtype=np.int64),
-        begins=np.zeros(with_motions, dtype=np.int64),
-        motions=np.empty(with_motions * MOTION_ROWS * _SEGMENTS * (friction_steps + 1)),
-    )
 
 
 @dataclass(frozen=True)
@@ -337,8 +343,7 @@ class RecordedContact:
     def of(cls, conditions: ImpactConditions, tolerance: float) -> RecordedContact:
         """Follow the contact of one drop again, and record its steps."""
         held = conditions.law.take(0)
-        law = _law_at_touch(held, conditions)
-        manner = _manner(conditions, 0, tolerance)
+        law, manner = law_and_bodies(held, conditions, tolerance)
         room = _ROOM
         while True:
             steps = records.LineSteps(
@@ -402,7 +407,7 @@ class RecordedContact:
         return np.concatenate([[0.0], times[inside], [end]])
 
 
-def common_manner(law: CompliantLaw, tolerance: float) -> records.LineManner:
+def _common_manner(law: CompliantLaw, tolerance: float) -> records.LineManner:
     """Return what contacts under a law have in common, as the core takes it, without bodies."""
     return records.LineManner(
         root=law.root,
@@ -419,7 +424,7 @@ def common_manner(law: CompliantLaw, tolerance: float) -> records.LineManner:
 
 def _manner(conditions: ImpactConditions, drop: int, tolerance: float) -> records.LineManner:
     """Return a drop of an impact as the core takes it."""
-    return common_manner(conditions.law, tolerance)._replace(
+    return _common_manner(conditions.law, tolerance)._replace(
         mass=float(conditions.mass[drop]),
         gravity=float(conditions.gravity[drop]),
         depth=float(conditions.depth[drop]),

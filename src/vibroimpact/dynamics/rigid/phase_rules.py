@@ -86,6 +86,7 @@ def normal_grid(steps: int) -> NormalGrid:
     """
     derivatives, values, integrals = _grid_matrices(steps)
     nodes, points = values.shape[1:]
+    most_points = _MOST_PARTS * (MORE_STEPS * steps + 1)
     return NormalGrid(
         steps=steps,
         derivatives=derivatives,
@@ -93,8 +94,9 @@ def normal_grid(steps: int) -> NormalGrid:
         integrals=integrals,
         own=np.zeros((2, nodes, points)),
         room=np.zeros((normal_records.GRID_ROWS, max(nodes, points))),
-        motion=np.zeros((normal_records.MOTION_ROWS, _MOST_PARTS * (MORE_STEPS * steps + 1))),
-        extent=np.zeros(2, dtype=np.int64),
+        motion=np.zeros((normal_records.MOTION_ROWS, most_points)),
+        parameter=np.zeros(most_points),
+        points=np.zeros(1, dtype=np.int64),
     )
 
 

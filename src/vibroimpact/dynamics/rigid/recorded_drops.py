@@ -5,22 +5,50 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import overload
+from typing import NamedTuple, overload
 
 import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
-from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.law import CompliantLaw, InstantaneousLaw
 from vibroimpact.dynamics.bounce import Bounce
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core.line_records import LineContacts
 from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.impact_conditions import impact_conditions_of
+from vibroimpact.dynamics.impact_conditions import ImpactConditions, impact_conditions_of
+from vibroimpact.dynamics.oblique.rubbed_contact import RubbedContact
+from vibroimpact.dynamics.oblique.state import ImpulseAlong, ObliqueContacts, Sphere, State
 from vibroimpact.dynamics.problem import Problem
 
 _ALONE = np.zeros(1, dtype=np.intp)
-_NO_MOTION = np.zeros(0, dtype=np.int64)
+
+
+class Start(NamedTuple):
+    """B drops at their start: gaps [m] and upward velocities [m/s] (B, 2), and the members of
+    `SphereState` of those that move along the plate (B, 7).
+    """
+
+    normal: Floats
+    along: Floats
+
+    def take(self, drop: int) -> Start:
+        """Return the start of one drop, as that of a batch of one."""
+        return Start(self.normal[[drop]], self.along[drop : drop + 1])
+
+
+def spheres_of(problem: Problem) -> Sphere:
+    """Return the spheres of a problem whose drops move along the plate."""
+    oblique = problem.oblique
+    assert oblique is not None
+    ones = np.ones(problem.shape or 1)
+    gravity = np.array([value * ones for value in oblique.gravity])
+    return Sphere(
+        problem.sphere.mass * ones,
+        problem.sphere.contact_offset * ones,
+        problem.sphere_inertia * ones,
+        gravity,
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,18 +59,18 @@ class RecordedDrops:
     ----------
     problem : Problem
         What was simulated.
-    start : array, shape (B, 2)
-        Gaps [m] and upward velocities [m/s] at the start.
+    start : Start
+        The drops at their start.
     impacts, flights : array of int, shape (B,)
         How many there were.
-    rows : array, shape (B, R, 20)
+    rows : array, shape (B, R, 21 or 40)
         The columns of the impacts, of `core.drop_records`.
     end_time : array, shape (B,)
         When the runs ended [s].
     """
 
     problem: Problem
-    start: Floats
+    start: Start
     impacts: Integers
     flights: Integers
     rows: Floats
@@ -52,7 +80,7 @@ class RecordedDrops:
         """Return what it wrote of one drop."""
         return RecordedDrop(
             problem=self.problem if self.problem.shape == () else self.problem.take(drop),
-            start=self.start[drop],
+            start=self.start.take(drop),
             flights=int(self.flights[drop]),
             rows=self.rows[drop, : self.impacts[drop]].copy(),
             end_time=float(self.end_time[drop]),
@@ -67,7 +95,7 @@ class RecordedDrop(Sequence[Bounce]):
     """
 
     problem: Problem
-    start: Floats
+    start: Start
     flights: int
     rows: Floats
     end_time: float
@@ -88,9 +116,20 @@ class RecordedDrop(Sequence[Bounce]):
 
     def _bounce(self, number: int) -> Bounce:
         flight = self._flight(number)
+        oblique = self._along(number)
         if number == len(self.rows):
-            return Bounce(_ALONE, flight, np.array([self.end_time]), _ALONE[:0])
-        # a law without a force does not load the compiler
+            return Bounce(_ALONE, flight, np.array([self.end_time]), _ALONE[:0], oblique=oblique)
+        touch = self.rows[number, [records.TOUCH]]
+        if isinstance(self.problem.laws[0], InstantaneousLaw):
+            return Bounce(
+                _ALONE,
+                flight,
+                touch,
+                _ALONE,
+                oblique=oblique,
+                oblique_contacts=self._struck_along(number),
+            )
+        # only where it is needed: it loads much
         from vibroimpact.dynamics.rigid.line_contact import contact_of
 
         row = self.rows[number]
@@ -98,13 +137,22 @@ class RecordedDrop(Sequence[Bounce]):
         law = self._law(number, speed)
         mass = self.problem.sphere.mass * np.ones(1)
         conditions = impact_conditions_of(law, mass, self._gravity, speed)
-        contact = contact_of(conditions, self.problem.tolerance, _contacts_of(row))
-        return Bounce(_ALONE, flight, row[[records.TOUCH]], _ALONE, contact, conditions)
+        return Bounce(
+            drops=_ALONE,
+            flight=flight,
+            flight_end=touch,
+            contact_drops=_ALONE,
+            contact=contact_of(conditions, self.problem.tolerance, _contacts_of(row)),
+            conditions=conditions,
+            oblique=oblique,
+            oblique_contacts=self._rubbed_along(number, conditions),
+        )
 
     def _flight(self, number: int) -> Flight:
         """Return the flight before an impact."""
         if number == 0:
-            return Flight(np.zeros(1), self.start[:1], self.start[1:], self._gravity)
+            gap, velocity = self.start.normal.T
+            return Flight(np.zeros(1), gap, velocity, self._gravity)
         before = self.rows[number - 1]
         return Flight(
             start=before[[records.TOUCH]] + before[[records.DURATION]],
@@ -112,6 +160,43 @@ class RecordedDrop(Sequence[Bounce]):
             velocity=before[[records.RELEASE_VELOCITY]],
             gravity=self._gravity,
         )
+
+    def _along(self, number: int) -> tuple[Sphere, State] | None:
+        """Return the sphere, and its motion along the plate at the start of a flight, if any."""
+        if self.problem.oblique is None:
+            return None
+        state = State.of_rows(self.start.along)
+        if number > 0:
+            state = _released_along(self.rows[number - 1])
+        return self._sphere, state
+
+    def _struck_along(self, number: int) -> ObliqueContacts:
+        """Return the motion along the plate after an impulse, if there is any."""
+        if self.problem.oblique is None:
+            return ()
+        row = self.rows[number]
+        return ((_ALONE, ImpulseAlong(_released_along(row), row[[records.FRICTION_LOST]])),)
+
+    def _rubbed_along(self, number: int, conditions: ImpactConditions) -> ObliqueContacts:
+        """Return the motion along the plate in a contact, if there is any."""
+        if self.problem.oblique is None:
+            return ()
+        row = self.rows[number]
+        columns = row[records.ALONG :]
+        before = State.of_rows(columns[[0, 1, 2, 3, 6, 7, 8]][None])
+        contact = RubbedContact(
+            conditions,
+            self.problem.tolerance,
+            self.problem.oblique.friction,
+            self._sphere,
+            before,
+            row[[records.DURATION]],
+        )
+        return ((_ALONE, contact),)
+
+    @cached_property
+    def _sphere(self) -> Sphere:
+        return spheres_of(self.problem)
 
     @cached_property
     def _gravity(self) -> Floats:
@@ -124,9 +209,15 @@ class RecordedDrop(Sequence[Bounce]):
         if not self.problem.memory_lasts:
             return law
         law = law.changed(self.problem.laws[0].memories())
-        if number == 0:
-            return law
-        return law.after_compression(self.rows[:number, [records.INDENTATION]].max(axis=0))
+        dent = self.rows[number, [records.DENT_BEFORE]]
+        return law.after_compression(dent) if dent > 0.0 else law
+
+
+def _released_along(row: Floats) -> State:
+    """Return the state along the plate at the end of an impact, from its row."""
+    place = row[[records.RELEASE_X, records.RELEASE_Y]]
+    columns = row[records.ALONG :]
+    return State.of_rows(np.concatenate([place, columns[[4, 5, 9, 10, 11]]])[None])
 
 
 def _contacts_of(row: Floats) -> LineContacts:
@@ -150,4 +241,4 @@ def _contacts_of(row: Floats) -> LineContacts:
             row[records.LEFT_STORED],
         ]
     )
-    return LineContacts(np.array([outcome]), ends[:, None], _NO_MOTION, _NO_MOTION, np.zeros(0))
+    return LineContacts(np.array([outcome]), ends[:, None])

@@ -14,10 +14,8 @@ from vibroimpact.dynamics.columns import IMPACT_COLUMNS
 from vibroimpact.dynamics.contact import FAILED, Contact
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.impact_conditions import ImpactConditions
-from vibroimpact.dynamics.oblique.normal_motion import normal_motions
 from vibroimpact.dynamics.oblique.oblique_motion import ObliqueMotion
 from vibroimpact.dynamics.oblique.state import ObliqueContacts
-from vibroimpact.dynamics.rigid.solve_contact import SolvesContact
 from vibroimpact.dynamics.run_bodies import Motions
 
 if TYPE_CHECKING:  # a drop of rigid bodies does not load what vibrates
@@ -33,13 +31,13 @@ class RigidBodies:
     ----------
     size : int
         Number of drops.
-    solve_contact : SolvesContact
-        Solver of their contacts.
+    tolerance : float
+        Relative error allowed in their contacts.
     """
 
-    def __init__(self, size: int, solve_contact: SolvesContact) -> None:
+    def __init__(self, size: int, tolerance: float) -> None:
         self.columns = tuple(IMPACT_COLUMNS)
-        self.solve_contact = solve_contact
+        self.tolerance = tolerance
         self.remaining_energy = np.full(size, np.nan)
         self.lying: list[RestMotion | None] = [None] * size
 
@@ -73,8 +71,11 @@ class RigidBodies:
         limits: tuple[Floats, Floats],
         row: dict[str, Floats],
     ) -> tuple[Contact, Floats, Floats]:
-        """Return the contact of drops from the solver of the run."""
-        return self.solve_contact(conditions, drops)
+        """Return the contact of drops, which the core solves."""
+        # a law without a force does not load it
+        from vibroimpact.dynamics.rigid.line_contact import follow_contacts
+
+        return follow_contacts(conditions, self.tolerance)
 
     def slide(
         self, oblique: ObliqueMotion, bounce: Bounce, row: dict[str, Floats]
@@ -84,11 +85,10 @@ class RigidBodies:
         The normal motion does not feel friction.
         """
         assert bounce.contact is not None
-        assert bounce.contact.normals is not None
         assert bounce.conditions is not None
-        motions = normal_motions(bounce.contact.normals, bounce.conditions)
-        bounce.contact.normals = None  # no history reads them
-        return oblique.collide(bounce.contact_drops, motions, row)
+        return oblique.collide(
+            bounce.contact_drops, bounce.conditions, bounce.contact.duration, row
+        )
 
     def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> Bools:
         """Return which drops fall back into the indentation.

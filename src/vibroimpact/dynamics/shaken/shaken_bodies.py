@@ -9,7 +9,6 @@ from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.rigid.rigid_bodies import RigidBodies
-from vibroimpact.dynamics.rigid.solve_contact import SolvesContact
 from vibroimpact.dynamics.run_bodies import Motions
 from vibroimpact.dynamics.shaken.ride import Ride
 from vibroimpact.dynamics.vibrating.fluid_motion import free_motion
@@ -34,14 +33,10 @@ class ShakenBodies(RigidBodies):
         The problem, whose motion moves the surface of the plate.
     mass, gravity : array, shape (B,)
         Of the spheres [kg], [m/s^2].
-    solve_contact : SolvesContact
-        Of laws that have a force; none does here.
     """
 
-    def __init__(
-        self, problem: Problem, mass: Floats, gravity: Floats, solve_contact: SolvesContact
-    ) -> None:
-        super().__init__(len(mass), solve_contact)
+    def __init__(self, problem: Problem, mass: Floats, gravity: Floats) -> None:
+        super().__init__(len(mass), problem.tolerance)
         self.problem = problem
         self.mass = mass
         self.gravity = gravity

@@ -17,7 +17,7 @@ from vibroimpact.dynamics.vibrating.surface_friction import SlidingStretch
 
 @dataclass(frozen=True)
 class SlidingContact:
-    """The motion along the plate in the impact of one drop; see `ObliqueContact`.
+    """The motion along the plate in the impact of one drop; see `ContactAlong`.
 
     `sphere`, `before`: the sphere, and its state at first touch. `duration`: of the impact [s]
     (1,). `stretches`: its stretches under friction, with their starts since first touch [s].
