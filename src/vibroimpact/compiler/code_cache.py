@@ -9,11 +9,12 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from numba.core import caching, compiler, environment, serialize
+from numba.core import caching, environment, serialize
 from numba.core.codegen import ll
 from numba.core.runtime import _nrt_python, rtsys
 
 from vibroimpact.compiler.code_store import has_code, load_code, machine_folder, save_code
+from vibroimpact.compiler.loaded_code import loaded_function
 from vibroimpact.compiler.symbols import are_linked, called_by_symbol
 
 
@@ -32,14 +33,17 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
         What it is compiled from, with its callees, its signature and the options.
     is_own : bool
         Are it and its callees functions of this package?
+    is_inner : bool
+        Does only compiled code call it?
     """
 
-    def __init__(self, name: str, digest: str, is_own: bool) -> None:
+    def __init__(self, name: str, digest: str, *, is_own: bool, is_inner: bool) -> None:
         code = hashlib.sha256(digest.encode()).hexdigest()
         self._file = f"{name}-{code[:32]}"
         self.number = int(code[:15], 16)
         """A number that only this code has."""
         self._is_own = is_own
+        self._is_inner = is_inner
         self.trouble = ""
         """Why the code is not on the disk, or ""."""
         self.size = 0
@@ -73,7 +77,7 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
             if not are_linked(callees):
                 return None
             self.size = _machine_code_size(compiled)
-            return compiler.CompileResult._rebuild(target_context, *compiled)
+            return loaded_function(target_context, compiled, inner=self._is_inner)
         except Exception:  # whatever a pickle raises
             return None
 

@@ -59,6 +59,13 @@ class DeferredFunction:
         return CompiledFunction(self.py_func, self._signature)
 
     @cached_property
+    def signature_text(self) -> str:
+        """The signature, with all that it says of named tuples."""
+        from vibroimpact.compiler import types
+
+        return types.text_of(self._signature(types))
+
+    @cached_property
     def inner(self) -> Any:
         """The function as compiled code calls it."""
         from vibroimpact.compiler.functions import CompiledFunction

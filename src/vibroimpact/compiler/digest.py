@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterator, Mapping
+from functools import cache
 from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
 from typing import Any, cast
 
@@ -53,7 +54,7 @@ class Digest:
 
     def _add(self, value: Any) -> None:
         if isinstance(getattr(value, "py_func", None), FunctionType):
-            self._words.append(getattr(getattr(value, "compiled", value), "signature_text", ""))
+            self._words.append(getattr(value, "signature_text", ""))
             value = value.py_func
         if isinstance(value, FunctionType):
             self._add_function(cast(FunctionType, self._replaced.get(value, value)))
@@ -73,22 +74,12 @@ class Digest:
             return
         self._numbers[id(function)] = len(self._numbers)
         self.is_own &= _package(function) == _OWN_PACKAGE
-        self._add_code(function.__code__, function.__doc__)
+        words, used = _content_of(function)
+        self._words += words
         self._add(function.__defaults__)
-        for name, value in _used(function):
+        for name, value in used:
             self._words.append(name)
             self._add(value)
-
-    def _add_code(self, code: CodeType, docstring: str | None) -> None:
-        names = (code.co_varnames, code.co_names, code.co_cellvars, code.co_freevars)
-        self._words.append(f"code {code.co_code.hex()} {names} {code.co_argcount} {code.co_flags}")
-        for constant in code.co_consts:
-            if isinstance(constant, CodeType):
-                self._add_code(constant, None)
-            elif isinstance(constant, frozenset):  # in an order that differs between processes
-                self._words.append(repr(sorted(map(repr, constant))))
-            elif constant != docstring:
-                self._words.append(repr(constant))
 
 
 _PLAIN_TYPES = bool | int | float | complex | str | bytes | np.generic | None
@@ -113,6 +104,28 @@ def _text_of(value: Any) -> str:
 
 def _package(value: Any) -> str:
     return str(getattr(value, "__module__", None) or type(value).__module__).partition(".")[0]
+
+
+@cache
+def _content_of(function: FunctionType) -> tuple[list[str], list[tuple[str, Any]]]:
+    """Return the text of a function's code, and what it takes from outside.
+
+    It is read once: many functions call it, directly or not, and each of them has a digest.
+    """
+    return list(_words_of(function.__code__, function.__doc__)), _used(function)
+
+
+def _words_of(code: CodeType, docstring: str | None) -> Iterator[str]:
+    """Yield the text of code, without its docstring."""
+    names = (code.co_varnames, code.co_names, code.co_cellvars, code.co_freevars)
+    yield f"code {code.co_code.hex()} {names} {code.co_argcount} {code.co_flags}"
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _words_of(constant, None)
+        elif isinstance(constant, frozenset):  # in an order that differs between processes
+            yield repr(sorted(map(repr, constant)))
+        elif constant != docstring:
+            yield repr(constant)
 
 
 def _used(function: FunctionType) -> list[tuple[str, Any]]:

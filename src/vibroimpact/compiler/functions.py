@@ -121,8 +121,7 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
     @property
     def signature_text(self) -> str:
         """The signature, with all that it says of named tuples."""
-        signature = self._signature_of(types)
-        return " ".join([str(signature), *map(_fields, (signature.return_type, *signature.args))])
+        return types.text_of(self._signature_of(types))
 
     @property
     def is_kept(self) -> bool:
@@ -138,7 +137,9 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
             except NotDigestible:  # it is then compiled in each process
                 return False
             text = f"{digest.text} {self.signature_text} {self.targetoptions}"
-            self._cache = CodeCache(self.py_func.__name__, text, digest.is_own)
+            self._cache = CodeCache(
+                self.py_func.__name__, text, is_own=digest.is_own, is_inner=self._is_inner
+            )
         return bool(self._cache.has_code(self.targetctx))
 
     def _alone(self) -> Any:
@@ -249,12 +250,6 @@ def _multiplying(room, values, matrices, matrix, width, columns, product):  # ty
     return lambda room, values, matrices, matrix, width, columns, product: (
         intrinsics.product_of_rows(room, values, matrices, matrix, width, columns, product)
     )
-
-
-def _fields(kind: Any) -> str:
-    """Return the names of the members of a named tuple, which the name of its type leaves out."""
-    members = [_fields(member) for member in getattr(kind, "types", ())]
-    return " ".join([str(getattr(kind, "fields", "")), *members])
 
 
 def _replacing(body: Callable[..., Any]) -> Callable[..., Any]:

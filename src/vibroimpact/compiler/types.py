@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from types import ModuleType
+from typing import Any
 
 from numba import types
 
@@ -69,6 +70,17 @@ def of(kind: type) -> types.Type:
     if len(set(members)) == 1:
         return types.NamedUniTuple(members[0], len(members), kind)
     return types.NamedTuple(members, kind)
+
+
+def text_of(signature: Any) -> str:
+    """Return a text of numba's signature, with all that it says of named tuples."""
+    return " ".join([str(signature), *map(_fields, (signature.return_type, *signature.args))])
+
+
+def _fields(kind: Any) -> str:
+    """Return the names of the members of a named tuple, which the name of its type leaves out."""
+    members = [_fields(member) for member in getattr(kind, "types", ())]
+    return " ".join([str(getattr(kind, "fields", "")), *members])
 
 
 def _member(name: str, module: ModuleType) -> types.Type:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -52,7 +53,7 @@ class Contact:
     left in the contact [J]. `law`: the law with its memory of this contact.
     """
 
-    pieces: list[Piece]
+    pieces: Sequence[Piece]
     outcome: NDArray[np.int8]
     duration: Floats
     final_delta: Floats

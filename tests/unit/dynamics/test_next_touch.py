@@ -9,7 +9,7 @@ import pytest
 
 from support import one_in
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
-from vibroimpact.dynamics.vibrating.next_touch import next_touch
+from vibroimpact.dynamics.vibrating.next_touch import next_touch, times_apart
 
 NONE = np.zeros(0)
 
@@ -176,3 +176,27 @@ def test_what_leaves_and_is_not_turned_back_never_meets_again(approach: float) -
     assert next_touch(
         motion(NONE, NONE, NONE, approach=-1e-3, speed=2.0, gravity=0.0), 0.0, np.inf
     ) == pytest.approx(5e-4)
+
+
+def test_surfaces_stay_apart_for_the_time_that_is_stated() -> None:
+    rng = np.random.default_rng(5)
+    shorter = 0
+    for _ in range(200):
+        omega = 10.0 ** rng.uniform(0.0, 4.0, 3)
+        vibration = 10.0 ** rng.uniform(-6.0, -3.0)
+        free = motion(
+            omega,
+            vibration * rng.normal(size=3),
+            omega * vibration * rng.normal(size=3),
+            approach=-1e-3 - rng.uniform(0.0, 1e-2),
+            speed=rng.normal(),
+            gravity=rng.choice([-9.8, 0.0, 9.8]),
+            damping=rng.choice([0.0, 0.1]),
+            local=(1e-4 * rng.random(), 100.0),
+        )
+        level = np.array([max(0.0, float(free.system.approach(free.start)[0]))])
+        (apart,) = times_apart(free.system, free.start, level)
+        touch = next_touch(free, float(level[0]), np.inf)
+        assert apart <= touch * (1.0 + 1e-12)
+        shorter += 0.1 * touch < apart < touch < np.inf
+    assert shorter > 20

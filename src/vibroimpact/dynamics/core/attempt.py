@@ -49,6 +49,7 @@ from vibroimpact.dynamics.core.surface_friction import (
     free_motions,
     sliding_part,
     under_friction,
+    weights_across_and_along,
 )
 from vibroimpact.dynamics.core.surface_friction_records import SlidingSphere, SlidStretch
 
@@ -185,7 +186,8 @@ def attempt(
     begun = beginning.delta
     sliding = beginning.sliding
     length = event.x
-    motions = free_motions(basis, surfaces, start, sliding, length)
+    weights, weights_along = weights_across_and_along(surfaces, start, sliding)
+    motions = free_motions(basis, surfaces, start, sliding, weights, weights_along, length)
     friction = first_friction(sliding.sphere, len(basis.time))
     if not guessed:
         motion = under_friction(motions, friction.force)

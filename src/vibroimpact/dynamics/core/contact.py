@@ -17,6 +17,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.attempt import beginning_of
 from vibroimpact.dynamics.core.coasting import end_of_coasting
+from vibroimpact.dynamics.core.contact_peaks import peaks_with
 from vibroimpact.dynamics.core.contact_records import Begun, Bodies, Manner, Parts, Progress
 from vibroimpact.dynamics.core.events import (
     ENDS_AT_NO_FORCE,
@@ -126,10 +127,12 @@ def follow_contact(
     memories = progress.memories
     largest_force = progress.largest_force
     deepest = progress.deepest
+    peaks = progress.peaks
     sphere = progress.sphere
     elements = len(lost) - 1
     nodes = parts.force.shape[1]
     part = 0
+    under_law = 0  # the first part under the law as it is now
     changes = 0  # of the law's memory, in this call
     outcome = FULL
     parts.late_loss[0] = 0.0
@@ -189,6 +192,10 @@ def follow_contact(
                 continue
             if closing <= _ZERO_RATE * manner.motion_speed and delta > law.memory_level:
                 parts.turned_at[changes] = delta
+                peaks = peaks_with(
+                    bases, law, peaks, parts, (under_law, part), (largest_force, deepest)
+                )
+                under_law = part
                 changes += 1
                 memories += 1
                 law = law_after(law, delta)
@@ -243,6 +250,10 @@ def follow_contact(
             pushes = False
         elif event.kind == TURN:
             parts.turned_at[changes] = delta
+            peaks = peaks_with(
+                bases, law, peaks, parts, (under_law, part), (largest_force, deepest)
+            )
+            under_law = part
             changes += 1
             memories += 1
             law = law_after(law, delta)
@@ -253,6 +264,7 @@ def follow_contact(
             if is_near_rest(system, law, state, force):
                 outcome = NEAR_REST
                 break
+    peaks = peaks_with(bases, law, peaks, parts, (under_law, part), (largest_force, deepest))
     now = Progress(
         time,
         next_length,
@@ -266,6 +278,7 @@ def follow_contact(
         memories,
         largest_force,
         deepest,
+        peaks,
         sphere,
     )
     return outcome, part, now, state, law

@@ -169,6 +169,15 @@ class Manner(NamedTuple):
     most_steps: Integer
 
 
+class Peaks(NamedTuple):
+    """Largest force [N] and largest indentation [m] of a contact, and their times [s]."""
+
+    force: Real
+    time_of_force: Real
+    indentation: Real
+    time_of_indentation: Real
+
+
 class Progress(NamedTuple):
     """How far a contact has come.
 
@@ -176,7 +185,8 @@ class Progress(NamedTuple):
     indentation of the law [m], force [N], its rate of change trend [N/s], and closing, the whole
     rate of the approach [m/s]. fresh: no stretch has been solved yet. pushes: the law acts,
     otherwise the contact recoils. steps: stretches tried. memories: changes of the law's memory.
-    largest_force [N], deepest [m]: at a node. sphere: friction.
+    largest_force [N], deepest [m]: at a node; peaks: also between nodes, at the end of a call.
+    sphere: friction.
     """
 
     time: Real
@@ -191,6 +201,7 @@ class Progress(NamedTuple):
     memories: Integer
     largest_force: Real
     deepest: Real
+    peaks: Peaks
     sphere: SlidingSphere
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled, force_at
-from vibroimpact.dynamics.core.records import RELEASE, SPEED, Basis, Contacts
+from vibroimpact.dynamics.core.records import Basis, Law
 
 _POINTS = 33
 _ROUNDS = 3  # each narrows the search to a sixteenth
@@ -47,14 +47,14 @@ def nodal_value_between(basis: Basis, values: Floats, x: float) -> float:
     return value / total
 
 
-@compiled(lambda t: t.real(t.of(Basis), t.of(Contacts), t.vector, t.vector, t.real))
-def force_between(basis: Basis, law: Contacts, delta: Floats, rate: Floats, x: float) -> float:
+@compiled(lambda t: t.real(t.of(Basis), t.of(Law), t.vector, t.vector, t.real))
+def force_between(basis: Basis, law: Law, delta: Floats, rate: Floats, x: float) -> float:
     """Return the force of a law [N] at x in [0, 1], from its indentation and its rate at
     the start and the nodes (N + 1,).
     """
     reached, speed = values_between(basis, delta, rate, x)
     static, dissipative = force_at(law.addresses[0])(
-        max(reached, law.numbers[0, RELEASE]), speed, law.numbers[0, SPEED], law.coefficients[0]
+        max(reached, law.release), speed, law.speed, law.coefficients
     )
     return float(static + dissipative)
 
@@ -77,8 +77,8 @@ def peak_of(basis: Basis, values: Floats) -> tuple[float, float]:
     return x, values_between(basis, values, values, x)[0]
 
 
-@compiled(lambda t: t.tuple(t.real, t.real)(t.of(Basis), t.of(Contacts), t.vector, t.vector))
-def peak_of_force(basis: Basis, law: Contacts, delta: Floats, rate: Floats) -> tuple[float, float]:
+@compiled(lambda t: t.tuple(t.real, t.real)(t.of(Basis), t.of(Law), t.vector, t.vector))
+def peak_of_force(basis: Basis, law: Law, delta: Floats, rate: Floats) -> tuple[float, float]:
     """Return the x in [0, 1] at which the force of `force_between` is largest, and that
     force [N].
     """

@@ -19,14 +19,28 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Complex, Floats, Integers
+from vibroimpact.arrays import Complex, Floats
 from vibroimpact.compiled import compiled
-from vibroimpact.dynamics.core.records import Basis, Motion, Start, Surfaces
+from vibroimpact.dynamics.core.records import Basis, ModalWeights, Motion, Start, Surfaces
 
 
-@compiled(lambda t: t.matrix(t.of(Surfaces), t.of(Start)))
-def modal_weights(surfaces: Surfaces, start: Start) -> Floats:
-    """Return the weights of the modes in the sums of `modal_sums` (W, m).
+@compiled(lambda t: t.of(ModalWeights)(t.matrix))
+def with_extents(weights: Floats) -> ModalWeights:
+    """Return weights with the extent of each row: the modes of the other body have none."""
+    first = np.zeros(len(weights), dtype=np.int64)
+    last = np.zeros(len(weights), dtype=np.int64)
+    for row in range(len(weights)):
+        last[row] = weights.shape[1]
+        while first[row] < last[row] and weights[row, first[row]] == 0.0:
+            first[row] += 1
+        while first[row] < last[row] and weights[row, last[row] - 1] == 0.0:
+            last[row] -= 1
+    return ModalWeights(weights, first, last)
+
+
+@compiled(lambda t: t.of(ModalWeights)(t.of(Surfaces), t.of(Start)))
+def modal_weights(surfaces: Surfaces, start: Start) -> ModalWeights:
+    """Return the weights of the modes in the sums of `modal_sums`.
 
     By part (outside and within the contacts): first of the receptance of each two contacts, then of
     the spring and damper accelerations of each contact at the start, and last of the rates of the
@@ -56,7 +70,7 @@ def modal_weights(surfaces: Surfaces, start: Start) -> Floats:
                 spring_rate = surfaces.frequency_squared[mode] * start.velocity[mode]
                 weights[row, mode] = surfaces.shapes[part, contact, mode] * spring_rate
             row += 1
-    return weights
+    return with_extents(weights)
 
 
 @compiled(lambda t: t.void(t.of(Surfaces), t.real, t.real, t.matrix))
@@ -97,22 +111,6 @@ def write_slopes(
         slopes[1, mode] = -(slope * squared_imaginary + slope_imaginary * squared)
 
 
-@compiled(lambda t: t.tuple(t.integers, t.integers)(t.matrix))
-def extents(weights: Floats) -> tuple[Integers, Integers]:
-    """Return the first mode that has a weight in each row (W, m), and the one after the
-    last: the modes of the other body have none.
-    """
-    first = np.zeros(len(weights), dtype=np.int64)
-    last = np.zeros(len(weights), dtype=np.int64)
-    for row in range(len(weights)):
-        last[row] = weights.shape[1]
-        while first[row] < last[row] and weights[row, first[row]] == 0.0:
-            first[row] += 1
-        while first[row] < last[row] and weights[row, last[row] - 1] == 0.0:
-            last[row] -= 1
-    return first, last
-
-
 @compiled(lambda t: t.tuple(t.real, t.real)(t.vector, t.vector, t.vector))
 def weighted_sum(weights: Floats, real: Floats, imaginary: Floats) -> tuple[float, float]:
     """Return the sums of real and imaginary parts, times their weights; two sums of each
@@ -134,45 +132,46 @@ def weighted_sum(weights: Floats, real: Floats, imaginary: Floats) -> tuple[floa
     return total + other, total_imaginary + other_imaginary
 
 
-@compiled(lambda t: t.void(t.matrix, t.integers, t.integers, t.matrix, t.integer, t.cube))
-def write_sums(
-    weights: Floats, first: Integers, last: Integers, values: Floats, k: int, sums: Floats
-) -> None:
-    """Write the sums of values of all modes (2, m), times their weights in each row
-    within its extent, into `sums` (2, W, H) at k.
+@compiled(lambda t: t.void(t.of(ModalWeights), t.matrix, t.integer, t.cube))
+def write_sums(weights: ModalWeights, values: Floats, k: int, sums: Floats) -> None:
+    """Write the sums of values of all modes (2, m), times their weights, into `sums` (2, W, H) at
+    k.
     """
-    for row in range(len(weights)):
-        within = weights[row, first[row] : last[row]]
+    for row in range(len(weights.values)):
+        first = weights.first[row]
+        last = weights.last[row]
         real, imaginary = weighted_sum(
-            within, values[0, first[row] : last[row]], values[1, first[row] : last[row]]
+            weights.values[row, first:last], values[0, first:last], values[1, first:last]
         )
         sums[0, row, k] = real
         sums[1, row, k] = imaginary
 
 
-@compiled(lambda t: t.cube(t.of(Surfaces), t.matrix, t.matrix, t.real))
-def modal_sums(surfaces: Surfaces, weights: Floats, eigenvalues: Floats, length: float) -> Floats:
+@compiled(lambda t: t.cube(t.of(Surfaces), t.of(ModalWeights), t.matrix, t.real))
+def modal_sums(
+    surfaces: Surfaces, weights: ModalWeights, eigenvalues: Floats, length: float
+) -> Floats:
     """Return the weighted sums over the modes of 1/(1 + d sigma + w^2 sigma^2) at all
     eigenvalues, as parts (2, W, H).
     """
     number = eigenvalues.shape[1]
-    sums = np.empty((2, len(weights), number))
-    first, last = extents(weights)
+    sums = np.empty((2, len(weights.values), number))
     admittances = np.empty((2, len(surfaces.damping)))
     for k in range(number):
         write_admittances(
             surfaces, length * eigenvalues[0, k], length * eigenvalues[1, k], admittances
         )
-        write_sums(weights, first, last, admittances, k, sums)
+        write_sums(weights, admittances, k, sums)
     return sums
 
 
-@compiled(lambda t: t.cube(t.of(Surfaces), t.matrix, t.matrix, t.real))
-def modal_slopes(surfaces: Surfaces, weights: Floats, eigenvalues: Floats, length: float) -> Floats:
+@compiled(lambda t: t.cube(t.of(Surfaces), t.of(ModalWeights), t.matrix, t.real))
+def modal_slopes(
+    surfaces: Surfaces, weights: ModalWeights, eigenvalues: Floats, length: float
+) -> Floats:
     """Return the derivatives of the sums of `modal_sums` by sigma (2, W, H)."""
     number = eigenvalues.shape[1]
-    sums = np.empty((2, len(weights), number))
-    first, last = extents(weights)
+    sums = np.empty((2, len(weights.values), number))
     admittances = np.empty((2, len(surfaces.damping)))
     slopes = np.empty((2, len(surfaces.damping)))
     for k in range(number):
@@ -180,7 +179,7 @@ def modal_slopes(surfaces: Surfaces, weights: Floats, eigenvalues: Floats, lengt
         sigma_imaginary = length * eigenvalues[1, k]
         write_admittances(surfaces, sigma, sigma_imaginary, admittances)
         write_slopes(surfaces, sigma, sigma_imaginary, admittances, slopes)
-        write_sums(weights, first, last, slopes, k, sums)
+        write_sums(weights, slopes, k, sums)
     return sums
 
 
@@ -212,15 +211,18 @@ def write_matrix(
             matrix[row + node, column + other] = entries[node * nodes + other]
 
 
-@compiled(lambda t: t.of(Motion)(t.of(Basis), t.of(Surfaces), t.of(Start), t.real))
-def surface_motion(basis: Basis, surfaces: Surfaces, start: Start, length: float) -> Motion:
+@compiled(
+    lambda t: t.of(Motion)(t.of(Basis), t.of(Surfaces), t.of(ModalWeights), t.of(Start), t.real)
+)
+def surface_motion(
+    basis: Basis, surfaces: Surfaces, weights: ModalWeights, start: Start, length: float
+) -> Motion:
     """Return the motion of the surfaces through a stretch of a length [s]."""
     parts, contacts, _ = surfaces.shapes.shape
     nodes = len(basis.time)
     number = basis.eigenvalues.shape[1]
     elements = len(surfaces.rate)
     size = contacts * nodes
-    weights = modal_weights(surfaces, start)
     sums = modal_sums(surfaces, weights, basis.eigenvalues, length)
 
     outer = np.zeros((contacts, nodes))

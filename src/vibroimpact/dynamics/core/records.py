@@ -246,6 +246,17 @@ class End(NamedTuple):
     contact: Integer
 
 
+class ModalWeights(NamedTuple):
+    """Weights of the modes in sums over them (W, m), and their extent in each row (W,).
+
+    first: the first mode with a weight. last: the one after the last.
+    """
+
+    values: Matrix
+    first: Integers
+    last: Integers
+
+
 class Motion(NamedTuple):
     """Motion of the surfaces at the nodes of all contacts, M = c N: without contact forces, and by
     these.
@@ -253,9 +264,9 @@ class Motion(NamedTuple):
     Without contact forces (M,): approach [m], its rate by coordinates outside the contacts and
     closing, its whole rate [m/s]. To be subtracted, per force at the nodes (M, M):
     approach_by_force, rate_by_force, and, of the static forces on coordinates within the contacts,
-    approach_by_static and closing_by_static; the latter are (0, 0) where there are none. weights
-    (W, m), sums (2, W, H): the sums over the modes that it consists of, as `receptance.modal_sums`
-    gives them.
+    approach_by_static and closing_by_static; the latter are (0, 0) where there are none. weights,
+    sums (2, W, H): the sums over the modes that it consists of, as `receptance.modal_sums` gives
+    them.
     """
 
     approach: Vector
@@ -265,7 +276,7 @@ class Motion(NamedTuple):
     rate_by_force: Matrix
     approach_by_static: Matrix
     closing_by_static: Matrix
-    weights: Matrix
+    weights: ModalWeights
     sums: Cube
 
 

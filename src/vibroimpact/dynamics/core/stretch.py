@@ -490,7 +490,15 @@ def solve_stretch(
         if not (well_posed and np.isfinite(size)):
             break
         if end.kind != GIVEN_LENGTH:
-            motions = free_motions(basis, surfaces, start, sliding, length)
+            motions = free_motions(
+                basis,
+                surfaces,
+                start,
+                sliding,
+                motions.across.weights,
+                motions.along.weights,
+                length,
+            )
             motion = motions.across
         if sliding.sphere.directions:
             before = friction

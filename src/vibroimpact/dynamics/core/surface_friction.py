@@ -34,8 +34,8 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.linear import write_row
-from vibroimpact.dynamics.core.receptance import surface_motion
-from vibroimpact.dynamics.core.records import Basis, Motion, Start, Surfaces
+from vibroimpact.dynamics.core.receptance import modal_weights, surface_motion
+from vibroimpact.dynamics.core.records import Basis, ModalWeights, Motion, Start, Surfaces
 from vibroimpact.dynamics.core.surface_friction_moments import (
     slowing_spins,
     sphere_spins,
@@ -111,18 +111,49 @@ def flown(sphere: SlidingSphere, time: float) -> SlidingSphere:
 
 
 @compiled(
-    lambda t: t.of(Motions)(t.of(Basis), t.of(Surfaces), t.of(Start), t.of(SlidStretch), t.real)
+    lambda t: t.tuple(t.of(ModalWeights), t.of(ModalWeights))(
+        t.of(Surfaces), t.of(Start), t.of(SlidStretch)
+    )
+)
+def weights_across_and_along(
+    surfaces: Surfaces, start: Start, sliding: SlidStretch
+) -> tuple[ModalWeights, ModalWeights]:
+    """Return the weights of the modes in the motion of the surfaces, across and along them."""
+    across = modal_weights(surfaces, start)
+    if sliding.sphere.directions == 0:
+        return across, across
+    return across, modal_weights(sliding.surfaces, sliding.start)
+
+
+@compiled(
+    lambda t: t.of(Motions)(
+        t.of(Basis),
+        t.of(Surfaces),
+        t.of(Start),
+        t.of(SlidStretch),
+        t.of(ModalWeights),
+        t.of(ModalWeights),
+        t.real,
+    )
 )
 def free_motions(
-    basis: Basis, surfaces: Surfaces, start: Start, sliding: SlidStretch, length: float
+    basis: Basis,
+    surfaces: Surfaces,
+    start: Start,
+    sliding: SlidStretch,
+    weights: ModalWeights,
+    weights_along: ModalWeights,
+    length: float,
 ) -> Motions:
     """Return the motion of the surfaces through a stretch of a length [s], across and
     along them.
     """
-    across = surface_motion(basis, surfaces, start, length)
+    across = surface_motion(basis, surfaces, weights, start, length)
     if sliding.sphere.directions == 0:
         return Motions(across, across)
-    return Motions(across, surface_motion(basis, sliding.surfaces, sliding.start, length))
+    return Motions(
+        across, surface_motion(basis, sliding.surfaces, weights_along, sliding.start, length)
+    )
 
 
 @compiled(lambda t: t.of(FrictionAtNodes)(t.of(SlidingSphere), t.integer))

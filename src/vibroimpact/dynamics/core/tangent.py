@@ -16,7 +16,7 @@ from vibroimpact.dynamics.core.attempt import basis_of, surface_start
 from vibroimpact.dynamics.core.contact_records import Bodies, Solved
 from vibroimpact.dynamics.core.linear import product, solve_in_place
 from vibroimpact.dynamics.core.path import stretch_path
-from vibroimpact.dynamics.core.receptance import surface_motion
+from vibroimpact.dynamics.core.receptance import modal_weights, surface_motion
 from vibroimpact.dynamics.core.records import Bases, Contacts, Motion, State
 from vibroimpact.dynamics.core.stretch import (
     indentations_by,
@@ -115,12 +115,9 @@ def propagate(
         for variation in range(len(weights)):
             linearise_contact(laws, 1 + variation, delta, rate, varied)
             change += weights[variation] * (varied[:3] - linear[:3])
-        motion = surface_motion(
-            basis,
-            bodies.surfaces,
-            surface_start(bodies.system, bodies.surfaces, bodies.coordinates, difference),
-            length,
-        )
+        start = surface_start(bodies.system, bodies.surfaces, bodies.coordinates, difference)
+        of_modes = modal_weights(bodies.surfaces, start)
+        motion = surface_motion(basis, bodies.surfaces, of_modes, start, length)
         force, static = force_differences(motion, linear, change[2], change[0], change[1])
         path = stretch_path(
             basis, bodies.surfaces, bodies.coordinates, difference, length, force, static, False

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from operator import itemgetter
 
 import numpy as np
 
@@ -96,13 +95,6 @@ class Impact:
     impulse: float = 0.0
 
 
-def locate_highest_peak(peaks: Sequence[ContactPeak]) -> tuple[float, float]:
-    """Return the largest value of several peaks, and its time [s]."""
-    least = _PEAK * max(peak.nodal_max for peak in peaks)
-    # of equal values the first
-    return max((peak.locate() for peak in peaks if peak.nodal_max >= least), key=itemgetter(0))
-
-
 @dataclass
 class ActiveContact:
     """A contact whose surfaces overlap.
@@ -134,7 +126,7 @@ class ActiveContact:
 
     def overlap(self, system: LinearSystem, state: State) -> float:
         """Return the approach beyond that of release [m], at least zero."""
-        return max(float(system.approach(state)[self.number]) - self.local.release_level, 0.0)
+        return max(float(system.approach_at(state, self.number)) - self.local.release_level, 0.0)
 
     def law_indentation(self, system: LinearSystem, state: State) -> float:
         """Return the indentation of its law in a state [m]."""

@@ -2,34 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from vibroimpact.dynamics.core import contact as core
-from vibroimpact.dynamics.core.contact_records import Manner, Parts, Progress
+from vibroimpact.dynamics.core.contact_records import Manner, Peaks, Progress
 from vibroimpact.dynamics.core.events import ENDS, TENSIONS
-from vibroimpact.dynamics.core.records import MAPS
-from vibroimpact.dynamics.core.surface_friction_records import NUMBERS, SlidingSphere
-from vibroimpact.dynamics.vibrating.active_contact import ActiveContact, record_peaks
-from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
+from vibroimpact.dynamics.core.surface_friction_records import SlidingSphere
+from vibroimpact.dynamics.vibrating.active_contact import ActiveContact
 from vibroimpact.dynamics.vibrating.contact_view import contact_view
-from vibroimpact.dynamics.vibrating.free_motion import FreePhase
-from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, State
-from vibroimpact.dynamics.vibrating.local import LocalContact
-from vibroimpact.dynamics.vibrating.radau_eigenbasis import (
-    NODES_PER_STRETCH,
-    RadauEigenbasis,
-    bases_of,
-    radau_eigenbasis,
-)
-from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
-from vibroimpact.dynamics.vibrating.stretch_end import with_separation_loss
-from vibroimpact.dynamics.vibrating.surface_friction import SlidingState, SlidingStretch
-from vibroimpact.dynamics.vibrating.time_marching import MotionPart, TimeMarching
-
-_PARTS = 64
-"""Parts of the motion that the core writes before they are read."""
+from vibroimpact.dynamics.vibrating.linear_system import State
+from vibroimpact.dynamics.vibrating.radau_eigenbasis import bases_of
+from vibroimpact.dynamics.vibrating.recorded_contact import RecordedContact, copied
+from vibroimpact.dynamics.vibrating.time_marching import TimeMarching
 
 
 @dataclass(frozen=True)
@@ -57,6 +43,7 @@ class CompiledContact:
     ) -> None:
         self.march = march
         self.active = active
+        self.recorded: list[RecordedContact] = []
         law = active.local.law
         self.view = contact_view(march.system, (0,))
         self.root = law.root
@@ -86,10 +73,11 @@ class CompiledContact:
             memories=0,
             largest_force=0.0,
             deepest=0.0,
+            peaks=Peaks(0.0, 0.0, 0.0, 0.0),
             sphere=sphere,
         )
         self.state = march.state.record
-        self.parts = _empty_parts(march.system.number, len(march.system.rate), sphere.directions)
+        self.parts = self.view.room
         self.locals = [active.local]
 
     @property
@@ -130,35 +118,21 @@ class CompiledContact:
         return outcome
 
     def _read(self, count: int) -> None:
-        """Append the parts that were written to the history of the march, and record the peaks."""
-        march = self.march
+        """Keep the parts that were written."""
         late_loss = float(self.parts.late_loss[0])
-        if late_loss:  # at the end of the last part that was read
-            last = march.parts[-1]
-            assert isinstance(last.motion, VibratingStretch)
-            march.parts[-1] = replace(last, motion=with_separation_loss(last.motion, 0, late_loss))
+        if late_loss:  # at the end of the last part that was kept
+            self.recorded[-1].lose_at_end(late_loss)
         self._update_memories()
-        parts = Parts._make(values[:count].copy() for values in self.parts)
-        largest_force = parts.force.max(axis=1).tolist()
-        starts = [
-            State(parts.displacement[part], parts.velocity[part], parts.local[part])
-            for part in range(count)
-        ]
-        ends = [*starts[1:], State(*self.state)]
-        for part in range(count):
-            local = self.locals[parts.memories[part]]
-            time = float(parts.start[part])
-            if parts.kind[part] == 0:
-                free = FreeMotion(march.system, starts[part])
-                recoil = FreePhase(free, float(parts.length[part]), ((0, local),))
-                march.parts.append(MotionPart(time, recoil))
-                continue
-            stretch = self._stretch(parts, part, local, starts[part])
-            march.parts.append(MotionPart(time, stretch))
-            record_peaks(
-                self.active.impact, stretch, 0, time, largest_force[part], parts.indentation[part]
+        if count:
+            self.recorded.append(
+                RecordedContact(
+                    self.view,
+                    copied(self.parts, count),
+                    tuple(self.locals),
+                    self.progress.sphere,
+                    State(*self.state),
+                )
             )
-            stretch.__dict__["end"] = ends[part]  # which it would compute anew
 
     def _update_memories(self) -> None:
         """Add the contacts after the turns that the core has met since the last reading."""
@@ -167,80 +141,3 @@ class CompiledContact:
             local = self.locals[-1]
             self.march.plastic += float(local.law.plastic_work(indentation))
             self.locals.append(local.after_indentation(indentation))
-
-    def _stretch(
-        self, parts: Parts, part: int, local: LocalContact, start: State
-    ) -> VibratingStretch:
-        """Return a stretch of contact from one of the parts."""
-        basis = radau_eigenbasis(MAPS[parts.time_map[part]], self.root)
-        static = parts.static[part]
-        history = ContactHistory(
-            number=0,
-            local=local,
-            rule=basis.rule,
-            static=static,
-            dissipative=parts.force[part] - static,
-            approach=parts.approach[part],
-            rate=parts.rate[part],
-            closing=parts.closing[part],
-            delta=parts.delta[part],
-            work=float(parts.work[part]),
-            dissipated=float(parts.dissipated[part]),
-            separation_loss=float(parts.separation_loss[part]),
-        )
-        length = float(parts.length[part])
-        return VibratingStretch(
-            view=self.view,
-            basis=basis,
-            length=length,
-            start=start,
-            contacts=(history,),
-            roughness=float(parts.roughness[part]),
-            sliding=self._sliding(parts, part, basis, length),
-        )
-
-    def _sliding(
-        self, parts: Parts, part: int, basis: RadauEigenbasis, length: float
-    ) -> SlidingStretch | None:
-        """Return the friction through one of the parts; None without friction."""
-        sphere = self.progress.sphere
-        if not sphere.directions:
-            return None
-        start, end = (SlidingState.of(numbers) for numbers in parts.sphere[part])
-        return SlidingStretch(
-            basis.rule, length, sphere, start, end, parts.friction[part], parts.slip[part]
-        )
-
-
-def _empty_parts(number: int, elements: int, directions: int) -> Parts:
-    """Return arrays for the parts of the motion of a system.
-
-    `number`: of its coordinates. `elements`: of massless elements. `directions`: of friction.
-    """
-    nodes = NODES_PER_STRETCH
-    return Parts(
-        kind=np.zeros(_PARTS, dtype=np.int64),
-        time_map=np.zeros(_PARTS, dtype=np.int64),
-        start=np.empty(_PARTS),
-        length=np.empty(_PARTS),
-        displacement=np.empty((_PARTS, number)),
-        velocity=np.empty((_PARTS, number)),
-        local=np.empty((_PARTS, elements)),
-        memories=np.zeros(_PARTS, dtype=np.int64),
-        static=np.empty((_PARTS, nodes)),
-        force=np.empty((_PARTS, nodes)),
-        approach=np.empty((_PARTS, nodes + 1)),
-        rate=np.empty((_PARTS, nodes + 1)),
-        closing=np.empty((_PARTS, nodes + 1)),
-        delta=np.empty((_PARTS, nodes + 1)),
-        work=np.empty(_PARTS),
-        dissipated=np.empty(_PARTS),
-        roughness=np.empty(_PARTS),
-        separation_loss=np.empty(_PARTS),
-        indentation=np.empty((_PARTS, nodes + 1)),
-        turned_at=np.empty(_PARTS + 1),
-        late_loss=np.zeros(1),
-        friction=np.empty((_PARTS, directions, nodes)),
-        slip=np.empty((_PARTS, directions, nodes)),
-        sphere=np.empty((_PARTS, 2, NUMBERS)),
-    )

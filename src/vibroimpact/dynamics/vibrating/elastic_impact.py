@@ -10,6 +10,7 @@ lift it: it chatters and then rides, until it separates, no energy is left to li
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from operator import attrgetter
 
 import numpy as np
 
@@ -18,12 +19,12 @@ from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, RIDING, SETTLED
 from vibroimpact.dynamics.core import contact as core
+from vibroimpact.dynamics.core.contact_records import Peaks
 from vibroimpact.dynamics.core.surface_friction import flown
 from vibroimpact.dynamics.core.surface_friction_records import SlidingSphere
 from vibroimpact.dynamics.vibrating.active_contact import (
     ContactDefinition,
     closing_speed,
-    locate_highest_peak,
     motion_speed,
 )
 from vibroimpact.dynamics.vibrating.carried_oscillations import SteadyResponse, steady_response
@@ -37,12 +38,12 @@ from vibroimpact.dynamics.vibrating.contact_equilibrium import (
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.next_touch import next_touch, time_to_separation
-from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
+from vibroimpact.dynamics.vibrating.recorded_contact import MotionPart, RecordedContact
 from vibroimpact.dynamics.vibrating.surface_friction import (
     NO_FRICTION,
     longest_with_friction,
 )
-from vibroimpact.dynamics.vibrating.time_marching import MotionPart, TimeMarching
+from vibroimpact.dynamics.vibrating.time_marching import TimeMarching
 
 MOST_STEPS = 5_000
 """Largest number of stretches of contact in an impact, some ten seconds' work."""
@@ -59,10 +60,11 @@ class ElasticImpact:
     """Result of an impact; `outcome` is RELEASED, SETTLED, CAPTURED, RIDING or FAILED.
 
     `state`: at the end. `duration`: from first touch to last release [s]. `contacts`: number of
-    contacts. `max_indentation`, `max_force` and their times since first touch [m, N, s]. `lost`
-    [J], (n + 1,): energy lost in each coordinate, and in the contact. `plastic`: plastic work [J].
-    `law`: with its memory at the end. `stored`: energy left in the contact [J]. `local`: the
-    contact in which the sphere rests, if so.
+    contacts. `sections`: its history, the contacts and the free motions between. `max_indentation`,
+    `max_force` and their times since first touch [m, N, s]. `lost` [J], (n + 1,): energy lost in
+    each coordinate, and in the contact. `plastic`: plastic work [J]. `law`: with its memory at the
+    end. `stored`: energy left in the contact [J]. `local`: the contact in which the sphere rests,
+    if so.
     """
 
     system: LinearSystem
@@ -72,7 +74,7 @@ class ElasticImpact:
     outcome: int
     duration: float
     contacts: int
-    parts: list[MotionPart]
+    sections: list[RecordedContact | MotionPart]
     max_indentation: float
     time_of_max_indentation: float
     max_force: float
@@ -152,6 +154,8 @@ class _ImpactMarching:
         self.stored = 0.0
         self.equilibrium: ContactEquilibrium | None = None
         self.response: SteadyResponse | None = None
+        self.sections: list[RecordedContact | MotionPart] = []
+        self.peaks: list[Peaks] = []
         self.active = march.begin_contact(0)
 
     # one contact after another
@@ -179,12 +183,9 @@ class _ImpactMarching:
             approach = float(self.system.approach(march.state)[0])
             if approach <= float(self.next_law.touch_level):
                 local = replace(local, law=self.next_law)  # the next contact avoids the dent
-        max_indentation, time_of_max_indentation = locate_highest_peak(
-            [impact.indentation for impact in march.impacts]
-        )
-        max_force, time_of_max_force = locate_highest_peak(
-            [impact.force for impact in march.impacts]
-        )
+        # of equal values the first
+        force = max(self.peaks, key=attrgetter("force"))
+        indentation = max(self.peaks, key=attrgetter("indentation"))
         return ElasticImpact(
             system=self.system,
             state=march.state,
@@ -193,11 +194,11 @@ class _ImpactMarching:
             outcome=outcome,
             duration=separation_time,
             contacts=contacts,
-            parts=march.parts,
-            max_indentation=max_indentation,
-            time_of_max_indentation=time_of_max_indentation,
-            max_force=max_force,
-            time_of_max_force=time_of_max_force,
+            sections=self.sections,
+            max_indentation=indentation.indentation,
+            time_of_max_indentation=indentation.time_of_indentation,
+            max_force=force.force,
+            time_of_max_force=force.time_of_force,
             plastic=march.plastic,
             stored=self.stored,
             local=local,
@@ -223,6 +224,8 @@ class _ImpactMarching:
         # the core asks where the force is near the weight
         while outcome == core.NEAR_REST:
             outcome = core.CAPTURED if self.at_rest() else contact.follow()
+        self.sections.extend(contact.recorded)
+        self.peaks.append(contact.progress.peaks)
         self.stretches += contact.steps
         self.sphere = contact.progress.sphere
         if outcome != core.RELEASED:
@@ -245,10 +248,7 @@ class _ImpactMarching:
         """Whether the contact carries the weight, and its force will not vanish again."""
         state = self.march.state
         local = self.active.local
-        last = self.march.parts[-1].motion
-        if not isinstance(last, VibratingStretch):
-            return False
-        force = float(last.contacts[0].force[-1])
+        force = self.active.force
         driven = self.system.driven > 0
         if not driven:
             indentation = self.active.overlap(self.system, state)
@@ -304,6 +304,7 @@ class _ImpactMarching:
             if float(touch_rate[0]) >= self.rest_speed:
                 return False
         self.march.append_free(free, time)
+        self.sections.append(self.march.parts[-1])
         self.sphere = flown(self.sphere, time)
         self.active = self.march.begin_contact(0, law)
         return True

@@ -78,7 +78,7 @@ def end_of_coasting(
 def _coasting_time_estimate(free: FreeMotion, contact: ActiveContact) -> float:
     """Return an estimate of the duration of a recoil [s]."""
     overlap = contact.overlap(free.system, free.start)
-    separation_speed = -float(free.system.rates(free.start)[contact.number])
+    separation_speed = -float(free.system.rate_at(free.start, contact.number))
     return max(overlap / max(separation_speed, 1e-3 * contact.speed), 1e-6 * contact.span)
 
 
@@ -87,7 +87,7 @@ def _coasting_end_values(system: LinearSystem, contact: ActiveContact, states: S
 
     The first is positive where it has separated, the second where its law pushes again.
     """
-    approach = system.approach(states)[..., contact.number]
+    approach = system.approach_at(states, contact.number)
     release_level = contact.local.release_level
     static, dissipative = contact.local.forces(
         np.maximum(approach, release_level), system.outer_rates(states)[..., contact.number]

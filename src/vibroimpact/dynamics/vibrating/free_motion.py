@@ -63,7 +63,7 @@ def coasting_loss(
     """Return the stored energy that a recoiling contact has lost from a state to later ones [J]."""
 
     def elastic_energy(state: State) -> Floats:
-        approach = system.approach(state)[..., number]
+        approach = system.approach_at(state, number)
         return np.asarray(local.elastic_energy(np.maximum(approach, local.release_level)))
 
     return np.asarray(elastic_energy(start) - elastic_energy(states))

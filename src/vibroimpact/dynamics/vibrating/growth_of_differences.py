@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import groupby
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,6 +23,7 @@ from vibroimpact.dynamics.vibrating.contact_view import contact_view
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
+from vibroimpact.dynamics.vibrating.recorded_contact import MotionPart, RecordedContact
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.stretch_tangent import propagate_difference
 
@@ -47,7 +47,9 @@ class NeighbouringDrops:
         changes = np.sqrt(mass) * height_or_speed  # of the coordinate of the sphere
         self._drops = [_Neighbour(system, change, by_height) for change in changes.tolist()]
 
-    def follow(self, bounce: Bounce) -> Floats:
+    def follow(
+        self, bounce: Bounce, impacts: Sequence[Sequence[RecordedContact | MotionPart]]
+    ) -> Floats:
         """Return the growth of a relative change of the drop by the impact of a bounce [-].
 
         There is one value per drop of its contact. The drop is changed in its height, or in its
@@ -60,20 +62,16 @@ class NeighbouringDrops:
         ----------
         bounce : Bounce
             The next flight and contact of the drops, of which a body vibrates.
+        impacts : sequence of sequences of RecordedContact and MotionPart
+            The histories of the impacts of the drops in contact.
         """
         durations = bounce.flight_end - bounce.flight.start
         for drop, motion, duration in zip(bounce.drops, bounce.motions, durations, strict=True):
             self._drops[drop].fly(motion, float(duration))
         if bounce.contact is None:
             return np.zeros(0)
-        motions: dict[int, list[VibratingStretch | FreePhase]] = {
-            drop: [] for drop in bounce.contact_drops.tolist()
-        }
-        for piece in bounce.contact.pieces:
-            assert isinstance(piece.motion, (VibratingStretch, FreePhase))  # of bodies that vibrate
-            motions[int(bounce.contact_drops[piece.drops[0]])].append(piece.motion)
-        for drop, motions_of_drop in motions.items():
-            self._drops[drop].pass_impact(motions_of_drop)
+        for drop, sections in zip(bounce.contact_drops, impacts, strict=True):
+            self._drops[drop].pass_impact(sections)
         return np.array(
             [
                 self._drops[drop].leave(-float(rate))
@@ -130,38 +128,46 @@ class _Neighbour:
         self.separated = not inside
         self.last_stretch = None
 
-    def pass_impact(self, motions: Sequence[VibratingStretch | FreePhase]) -> None:
-        """Propagate through the parts of an impact."""
-        for _, phase in groupby(motions, _contact_identity):
-            stretches = []
-            for motion in phase:  # all of them stretches under one law, or all of them free
-                if isinstance(motion, FreePhase):
-                    self.fly(motion.free, motion.length, inside=motion.local is not None)
-                else:
-                    stretches.append(motion)
-            if stretches:
-                self.pass_through(stretches)
+    def pass_impact(self, sections: Sequence[RecordedContact | MotionPart]) -> None:
+        """Propagate through an impact."""
+        for section in sections:
+            if isinstance(section, MotionPart):
+                assert isinstance(section.motion, FreePhase)  # between two contacts
+                self.fly(section.motion.free, section.motion.length)
+            else:
+                self.pass_contact(section)
 
-    def pass_through(self, stretches: Sequence[VibratingStretch]) -> None:
-        """Propagate through stretches of contact under one law."""
-        first = stretches[0]
-        local = first.contacts[0].local
+    def pass_contact(self, contact: RecordedContact) -> None:
+        """Propagate through the parts of a contact."""
+        for first, end in contact.phases():
+            if contact.parts.kind[first]:
+                self.pass_through(contact, first, end)
+            else:
+                recoil = contact.recoil(first)
+                self.fly(recoil.free, recoil.length, inside=True)
+
+    def pass_through(self, contact: RecordedContact, first: int, end: int) -> None:
+        """Propagate through stretches of contact under one law, from the first one to an end."""
+        local = contact.local(first)
         if self.separated:
-            self.begin_contact(first)
+            self.begin_contact(contact.stretch(first))
         elif local is not self.local:
-            self.update_memory(first)
+            self.update_memory(contact.stretch(first))
         variations = _law_variations(local, self.law_differences)
         self.difference, force_differences = propagate_difference(
-            stretches, self.difference, variations
+            contact, (first, end), self.difference, variations
         )
         self.force_difference = float(force_differences[-1, -1])
-        self.last_stretch = stretches[-1]
+        self.last_stretch = contact.stretch(end - 1)
         assert self.impact is not None  # it has touched
-        for stretch, force_difference in zip(stretches, force_differences, strict=True):
-            force = float(stretch.contacts[0].force.max())
-            if force > self.impact.force:
-                self.impact.force = force
-                self.impact.strongest = (stretch, force_difference)
+        forces = contact.parts.force[first:end].max(axis=1)
+        strongest = int(forces.argmax())
+        if forces[strongest] > self.impact.force:
+            self.impact.force = float(forces[strongest])
+            self.impact.strongest = (
+                contact.stretch(first + strongest),
+                force_differences[strongest],
+            )
 
     def leave(self, speed: float) -> float:
         """End an impact with a speed upwards [m/s]; return the growth of the change."""
@@ -280,14 +286,6 @@ class _Neighbour:
             stretch.system, stretch.end, float(contact.force[-1]), float(contact.static[-1])
         )
         self.difference = _shifted(self.difference, rates, -excess / rate)
-
-
-def _contact_identity(motion: VibratingStretch | FreePhase) -> int:
-    """Return a number that stays the same until the memory of the contact law changes.
-
-    It is 0 for free motion.
-    """
-    return id(motion.contacts[0].local) if isinstance(motion, VibratingStretch) else 0
 
 
 def _state_rates(system: LinearSystem, state: State, force: float, static: float) -> State:

@@ -297,6 +297,19 @@ class LinearSystem(Oscillators):
             self.offset + state.displacement @ self.shape.T + state.local @ self.local_incidence.T
         )
 
+    def approach_at(self, state: State, contact: int) -> Floats:
+        """Return the approach of the surfaces of one contact [m] (...)."""
+        return np.asarray(
+            self.offset[contact]
+            + state.displacement @ self.shape[contact]
+            + state.local @ self.local_incidence[contact]
+        )
+
+    def rate_at(self, state: State, contact: int) -> Floats:
+        """Return the rate of the approach of one contact without contact force [m/s] (...)."""
+        local = (state.local * self.rate) @ self.local_incidence[contact]
+        return np.asarray(state.velocity @ self.shape[contact] - local)
+
     def rates(self, state: State) -> Floats:
         """Return the rate of the approach without contact force [m/s] (..., contacts)."""
         return np.asarray(

@@ -78,7 +78,16 @@ class LocalContact:
     @cached_property
     def record(self) -> Contacts:
         """The contact as the core takes it."""
-        return core.contacts_of(self.with_levels, TENSIONS.index(self.law.tension))
+        law = self.with_levels
+        levels = (law.touch, law.release, law.release_level, law.memory_level)
+        breakpoints = (law.first_breakpoint, law.second_breakpoint)
+        return Contacts(
+            addresses=law.addresses,
+            coefficients=law.coefficients[None],
+            series=law.series[None],
+            numbers=np.array([[law.speed, *levels, *breakpoints, law.jump]]),
+            tension=np.array([TENSIONS.index(self.law.tension)]),
+        )
 
     # in terms of the indentation of the law
     # ---------------------------------------------------------

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.core import touch
 from vibroimpact.dynamics.core.records import Approach
 from vibroimpact.dynamics.vibrating.fluid_motion import FluidMotion
-from vibroimpact.dynamics.vibrating.linear_system import FreeMotion
+from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 
 _MOST_STEPS = 100_000
 _MOST_HORIZONS = 10_000
@@ -48,6 +49,26 @@ def time_to_separation(motion: FreeMotion, level: float, contact: int = 0) -> fl
     return float(
         touch.time_to_separation(motion.system.record_of(contact), motion.start.record, level)
     )
+
+
+def times_apart(system: LinearSystem, state: State, levels: Floats) -> Floats:
+    """Return for how long surfaces surely stay apart in free motion [s] (contacts,).
+
+    It is zero where they overlap beyond a level [m] (contacts,). See `core.touch.time_apart`.
+    """
+    vibrating = system.vibrating
+    frequency = system.angular_frequency[vibrating]
+    peak_speed = np.hypot(state.velocity[vibrating], frequency * state.displacement[vibrating])
+    by_modes = peak_speed * frequency * (1.0 + 2.0 * system.damping_ratio[vibrating])
+    by_elements = system.local_incidence @ (np.abs(state.local) * system.rate**2)
+    most = np.abs(system.shape[:, vibrating]) @ by_modes + by_elements + np.abs(system.gravity)
+    gap = np.maximum(levels - system.approach(state), 0.0)
+    opening = -system.rates(state)
+    root = np.sqrt(opening**2 + 2.0 * most * gap)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        until_closed = 2.0 * gap / (root - opening)
+        time = np.where(opening < 0.0, until_closed, (opening + root) / most)
+    return np.where(gap > 0.0, np.nan_to_num(time, nan=np.inf, posinf=np.inf), 0.0)
 
 
 # through a fluid, where the flight is not that of the core

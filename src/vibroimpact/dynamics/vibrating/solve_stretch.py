@@ -129,7 +129,5 @@ class StretchAhead:
         stretch = VibratingStretch(
             self.view, basis, solved.length, self.state, histories, motion.roughness
         )
-        path = balance.path
-        # which it would compute anew
-        stretch.__dict__["end"] = State(path.displacement, path.speed, path.local)
+        stretch.__dict__["path"] = balance.path  # which it would compute anew
         return stretch

@@ -7,7 +7,6 @@ import weakref
 from collections import deque
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.core.path import stretch_path
 from vibroimpact.dynamics.core.peak import peak_of_force
+from vibroimpact.dynamics.core.records import Path
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import ContactView
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
@@ -41,25 +41,6 @@ class _Kept(threading.local):
 
 
 _kept = _Kept()
-
-
-class StretchMotion(NamedTuple):
-    """Motion of the coordinates through a stretch.
-
-    At the nodes: `accelerations` and `velocities` of the coordinates (N, n), and rates of the
-    massless elements, `massless` (N, k). `end`: the state at the end. `gain`: increase of the
-    energy of coordinates and massless elements, without the contact laws, and `rounding`: its
-    rounding error [J]. `lost`: energy lost by the damping of each coordinate, and last in the
-    massless elements [J] (n + 1,); of a driven coordinate minus the work of its drive.
-    """
-
-    accelerations: Floats
-    velocities: Floats
-    massless: Floats
-    end: State
-    gain: float
-    rounding: float
-    lost: Floats
 
 
 @dataclass(frozen=True)
@@ -105,9 +86,17 @@ class VibratingStretch:
         return np.stack([contact.force for contact in self.contacts])
 
     @cached_property
-    def motion(self) -> StretchMotion:
+    def motion(self) -> Path:
         """Motion of the coordinates; recomputed from the forces if it is no longer kept."""
         self.keep()
+        return self._path(accelerated=True)
+
+    @cached_property
+    def path(self) -> Path:
+        """The same; the accelerations may be absent."""
+        return self.__dict__.get("motion") or self._path(accelerated=False)
+
+    def _path(self, *, accelerated: bool) -> Path:
         view = self.view
         force = self.force
         static = np.stack([contact.static for contact in self.contacts])
@@ -116,7 +105,7 @@ class VibratingStretch:
             view = view.sliding
             force = np.concatenate([force, self.sliding.force])
             static = np.concatenate([static, np.zeros_like(self.sliding.force)])
-        path = stretch_path(
+        return stretch_path(
             self.basis.basis,
             view.surfaces,
             view.coordinates,
@@ -124,33 +113,24 @@ class VibratingStretch:
             self.length,
             force.ravel(),
             static.ravel(),
-            True,
-        )
-        gain, rounding = path.energies.tolist()
-        return StretchMotion(
-            accelerations=path.acceleration,
-            velocities=path.velocity,
-            massless=path.massless.T,
-            end=State(path.displacement, path.speed, path.local),
-            gain=gain,
-            rounding=rounding,
-            lost=path.lost,
+            accelerated,
         )
 
     @property
     def accelerations(self) -> Floats:
         """Accelerations of the coordinates at the nodes (N, n)."""
-        return self.motion.accelerations
+        return self.motion.acceleration
 
     @property
     def velocities(self) -> Floats:
         """Velocities of the coordinates at the nodes (N, n)."""
-        return self.motion.velocities
+        return self.path.velocity
 
     @cached_property
     def end(self) -> State:
         """State at the end."""
-        return self.motion.end
+        path = self.path
+        return State(path.displacement, path.speed, path.local)
 
     def time_at(self, x: float) -> float:
         """Return the time since the start at an x in [0, 1] [s]."""
@@ -170,7 +150,7 @@ class VibratingStretch:
         return State(
             start.displacement + fall + to_time @ forced_velocity,
             start.velocity + t * load + to_time @ forced,
-            start.local + to_time @ self.motion.massless,
+            start.local + to_time @ self.motion.massless.T,
         )
 
     def peak_force(self, contact: int = 0) -> tuple[float, float]:
@@ -180,7 +160,7 @@ class VibratingStretch:
         """
         history = self.contacts[contact]
         x, force = peak_of_force(
-            self.basis.basis, history.local.record, history.delta, history.rate
+            self.basis.basis, history.local.with_levels, history.delta, history.rate
         )
         return x, force if history.local.law.tension == "kept" else max(force, 0.0)
 
@@ -203,7 +183,7 @@ class VibratingStretch:
         """
         system = self.system
         in_laws = sum(contact.power for contact in self.contacts)
-        in_contacts = in_laws + (self.motion.massless**2 / system.mobility).sum(axis=1)
+        in_contacts = in_laws + (self.path.massless.T**2 / system.mobility).sum(axis=1)
         in_coordinates = system.damping * self.velocities**2
         if system.driven:
             # a driven coordinate loses minus the work of its drive, which balances the contact
@@ -217,7 +197,7 @@ class VibratingStretch:
     @cached_property
     def lost(self) -> Floats:
         """Energy lost over the stretch, with losses at its end [J], (n + 1,) as in `powers`."""
-        lost = self.motion.lost.copy()
+        lost = self.path.lost.copy()
         lost[-1] += sum(contact.dissipated + contact.separation_loss for contact in self.contacts)
         return lost
 
@@ -246,7 +226,7 @@ class VibratingStretch:
             oldest = kept.popleft()()
             if oldest is not None:
                 _ = oldest.end, oldest.lost  # compute them while the motion is there
-                for name in ("motion", "powers", "force"):
+                for name in ("motion", "path", "powers", "force"):
                     oldest.__dict__.pop(name, None)
 
     def _x(self, time: Floats) -> Floats:

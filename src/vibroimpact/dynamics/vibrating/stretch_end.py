@@ -85,6 +85,6 @@ def with_separation_loss(
     contacts = list(stretch.contacts)
     contacts[index] = replace(contacts[index], separation_loss=stored_energy)
     ended = replace(stretch, contacts=tuple(contacts))
-    ended.__dict__["motion"] = stretch.motion  # unchanged
+    ended.__dict__["path"] = stretch.path  # unchanged
     ended.keep()
     return ended

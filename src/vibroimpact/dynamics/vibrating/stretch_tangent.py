@@ -12,11 +12,12 @@ from vibroimpact.dynamics.core.tangent import propagate
 from vibroimpact.dynamics.vibrating.linear_system import State
 from vibroimpact.dynamics.vibrating.local import LocalContact, contacts_of
 from vibroimpact.dynamics.vibrating.radau_eigenbasis import bases_of
-from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
+from vibroimpact.dynamics.vibrating.recorded_contact import RecordedContact
 
 
 def propagate_difference(
-    stretches: Sequence[VibratingStretch],
+    contact: RecordedContact,
+    between: tuple[int, int],
     difference: State,
     variations: Sequence[tuple[LocalContact, float]],
 ) -> tuple[State, Floats]:
@@ -26,8 +27,10 @@ def propagate_difference(
 
     Parameters
     ----------
-    stretches : sequence of VibratingStretch
-        Solved stretches of one contact under one law, one after the other.
+    contact : RecordedContact
+        A contact.
+    between : tuple of two ints
+        The first of its stretches under one law, and the one after the last.
     difference : State
         Difference of the state at their start between a neighbouring motion and that one, to first
         order.
@@ -35,23 +38,23 @@ def propagate_difference(
         Contacts with the law's closing speed or a memory varied, each with the factor by which the
         change of its force counts.
     """
-    first = stretches[0]
-    local = first.contacts[0].local
-    histories = [stretch.contacts[0] for stretch in stretches]
+    first, end = between
+    local = contact.local(first)
+    parts = contact.parts
     solved = contact_records.Solved(
-        time_map=np.array([stretch.basis.basis.time_map for stretch in stretches]),
-        length=np.array([stretch.length for stretch in stretches]),
-        delta=np.array([history.delta for history in histories]),
-        rate=np.array([history.rate for history in histories]),
+        time_map=parts.time_map[first:end],
+        length=parts.length[first:end],
+        delta=parts.delta[first:end],
+        rate=parts.rate[first:end],
     )
     laws = contacts_of([local, *(varied for varied, _ in variations)])
     weights = np.array([weight for _, weight in variations], dtype=float)
-    end, forces = propagate(
+    state, forces = propagate(
         bases_of(local.law.root),
-        first.view.without_load.bodies,
+        contact.view.without_load.bodies,
         laws,
         weights,
         solved,
         difference.record,
     )
-    return State(*end), forces
+    return State(*state), forces

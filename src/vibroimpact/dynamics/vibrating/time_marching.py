@@ -9,7 +9,7 @@ approach, or a touch at another contact. The stretch is then solved again so tha
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from operator import attrgetter
 
@@ -42,8 +42,13 @@ from vibroimpact.dynamics.vibrating.events import (
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase, coasting_loss
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
-from vibroimpact.dynamics.vibrating.next_touch import next_touch, time_to_separation
+from vibroimpact.dynamics.vibrating.next_touch import (
+    next_touch,
+    time_to_separation,
+    times_apart,
+)
 from vibroimpact.dynamics.vibrating.radau_eigenbasis import GRID
+from vibroimpact.dynamics.vibrating.recorded_contact import MotionPart
 from vibroimpact.dynamics.vibrating.solve_stretch import StretchAhead
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.stretch_end import (
@@ -59,25 +64,20 @@ _TOUCH_SLACK = 1e-12
 _MOST_STRETCHES = 200_000
 _ROUNDING = 1e-14  # of the deepest indentation
 _NO_FORCE = 1e-10  # of the largest force
+_NEAR_TOUCH = 1e-3  # of the way in a stretch: surfaces that come so near are looked at closely
+_FASTER_BETWEEN = 4.0  # of the largest speed at a node: bound of that between the nodes
 
 
 class NotIntegrable(ComputationError):
     """A contact can't be integrated to the tolerance."""
 
 
-@dataclass(frozen=True)
-class MotionPart:
-    """A part of the history of a march: its start [s] and its motion."""
-
-    start: float
-    motion: VibratingStretch | FreePhase
-
-
 class TimeMarching:
     """Time marching of a system through its contacts.
 
     `time` [s], `state`: current ones. `next_length`: of the next stretch [s]. `active`: contacts
-    whose surfaces overlap, by number. `next_laws`: laws of the next impacts, with their memory.
+    whose surfaces overlap, by number. `next_laws`: laws of the next impacts, with their memory;
+    `touch_levels`: approaches at which they touch [m].
     `dents`: laws of the last impacts where the next one meets undeformed surfaces, while surfaces
     may still overlap the dent. `parts`: the history. `impacts`: one record per impact. `lost` [J],
     (n + 1,): energy lost in each coordinate, and in the contacts; `plastic`: plastic work [J].
@@ -111,6 +111,7 @@ class TimeMarching:
         self.tolerance = tolerance
         self.scale = scale
         self.next_laws = [definition.law for definition in definitions]
+        self.touch_levels = np.array([float(law.touch_level) for law in self.next_laws])
         self.time = 0.0
         self.next_length = np.inf
         self.active: dict[int, ActiveContact] = {}
@@ -160,11 +161,7 @@ class TimeMarching:
     def step_free(self, longest: float) -> None:
         """Advance in free motion to the next touch, or to the end of a recoil."""
         free = FreeMotion(self.system, self.state)
-        touches = {
-            number: self.next_touch(free, number, longest)
-            for number in range(len(self.definitions))
-            if number not in self.active
-        }
+        touches = self.first_touches(free, longest)
         length = min([longest, *(time for time, _ in touches.values())])
         recoil_end = end_of_coasting(free, list(self.active.values()), length)
         if recoil_end is not None:
@@ -173,10 +170,32 @@ class TimeMarching:
             self.end_coasting(self.active[number], separates=separates)
             return
         self.append_free(free, length)
-        for number, (time, law) in touches.items():
-            # surfaces that touch at the same time
-            if time <= length + 1e-13 * (self.time + length):
+        for number in sorted(touches):
+            time, law = touches[number]
+            if time <= self.same_time(length):
                 self.begin_contact(number, law)
+
+    def same_time(self, length: float) -> float:
+        """Return until when surfaces touch at the same time as after a length [s]."""
+        return length + 1e-13 * (self.time + length)
+
+    def first_touches(
+        self, free: FreeMotion, longest: float
+    ) -> dict[int, tuple[float, CompliantLaw]]:
+        """Return when contacts next touch in free motion, and under which laws, by number.
+
+        Those are left out that surely touch later than another, or than `longest` [s].
+        """
+        apart_until = times_apart(self.system, self.state, self.touch_levels)
+        touches = {}
+        for number in np.argsort(apart_until, kind="stable").tolist():
+            # a bound that rounding may exceed
+            if (1.0 - 1e-9) * apart_until[number] > self.same_time(longest):
+                break
+            if number not in self.active:
+                touches[number] = self.next_touch(free, number, self.same_time(longest))
+                longest = min(longest, touches[number][0])
+        return touches
 
     def next_touch(
         self, free: FreeMotion, number: int, longest: float
@@ -254,6 +273,7 @@ class TimeMarching:
         definition = self.definitions[contact.number]
         if not definition.fresh_surface and definition.law.lasting:
             self.next_laws[contact.number] = contact.local.law
+            self.touch_levels[contact.number] = float(contact.local.law.touch_level)
         elif float(contact.local.law.release_level) > float(definition.law.touch_level):
             self.dents[contact.number] = contact.local.law
         del self.active[contact.number]
@@ -313,7 +333,7 @@ class TimeMarching:
             if contact.fresh:
                 continue
             overlap = contact.overlap(self.system, self.state)
-            rate = float(self.system.rates(self.state)[contact.number])
+            rate = float(self.system.rate_at(self.state, contact.number))
             if overlap <= _ROUNDING * contact.impact.indentation.nodal_max and rate < 0.0:
                 self.dissipate_stored(contact)
                 self.end_contact(contact)
@@ -489,13 +509,10 @@ class TimeMarching:
 
         It is a touch, or the end of a recoil.
         """
-        others = [
-            number for number in range(len(self.definitions)) if number not in stretch.view.contacts
-        ]
-        if not others:
+        recoiling = [number for number in self.active if number not in stretch.view.contacts]
+        apart = self.may_touch(stretch)
+        if not (recoiling or apart):
             return None
-        recoiling = [number for number in others if number in self.active]
-        apart = [number for number in others if number not in self.active]
         states = stretch.state(stretch.length * stretch.rule.map_time(GRID))
         slack = _TOUCH_SLACK * max(float(history.delta.max()) for history in stretch.contacts)
         possible: list[OtherEvent] = []
@@ -508,6 +525,29 @@ class TimeMarching:
             if x is not None:
                 events.append(replace(event, x=x))
         return min(events, key=attrgetter("x"), default=None)
+
+    def may_touch(self, stretch: VibratingStretch) -> list[int]:
+        """Return the contacts that are not closed and may touch within a stretch.
+
+        No coordinate moves by more than its largest speed times the length, and between the nodes
+        the speed stays below a few times that at them. There are no massless elements in systems.
+        """
+        fastest = np.abs(stretch.velocities).max(axis=0)
+        fastest = np.maximum(fastest, np.abs(stretch.start.velocity))
+        reach = _FASTER_BETWEEN * stretch.length * (np.abs(self.system.shape) @ fastest)
+        at_start = self.system.approach(stretch.start)
+        near = np.flatnonzero(at_start + reach > self.touch_levels)
+        # of these, those that come so near in the polynomials through the nodes
+        rates = stretch.velocities @ self.system.shape[near].T
+        at_nodes = at_start[near] + stretch.length * (stretch.rule.integral @ rates)
+        between = stretch.basis.basis.grid @ np.concatenate([at_start[near][None], at_nodes])
+        slack = _NEAR_TOUCH * reach[near]
+        touching = near[(between + slack > self.touch_levels[near]).any(axis=0)]
+        return [
+            number
+            for number in sorted({*touching.tolist(), *self.dents})
+            if number not in self.active
+        ]
 
     def ends_of_coasting(self, contact: ActiveContact) -> list[OtherEvent]:
         """Return the two ways in which the recoil of a contact may end."""
@@ -528,8 +568,7 @@ class TimeMarching:
         all are looked at together first.
         """
         approaches = self.system.approach(states)[:, apart]
-        levels = np.array([float(self.next_laws[number].touch_level) for number in apart])
-        touching = np.array(apart)[(approaches > levels + slack).any(axis=0)]
+        touching = np.array(apart)[(approaches > self.touch_levels[apart] + slack).any(axis=0)]
         touches = [
             OtherEvent(
                 partial(self.overlap_beyond, number, slack),
@@ -556,7 +595,7 @@ class TimeMarching:
         It is that under the next law, or with the dent that another law has left.
         """
         level = self.next_laws[number].touch_level if law is None else law.release_level
-        return np.asarray(self.system.approach(states)[..., number] - float(level) - slack)
+        return self.system.approach_at(states, number) - float(level) - slack
 
     def begin_contacts(self, number: int, slack: float, start: State) -> None:
         """Begin an impact at a contact, and at all others that touch with it.
@@ -564,9 +603,9 @@ class TimeMarching:
         They overlap by half a slack [m], and did not at the start.
         """
         self.begin_contact(number)
-        for other in range(len(self.definitions)):
-            apart = (
-                other not in self.active and float(self.overlap_beyond(other, slack, start)) <= 0.0
-            )
-            if apart and float(self.overlap_beyond(other, 0.5 * slack, self.state)) > 0.0:
+        levels = self.touch_levels
+        were_apart = self.system.approach(start) - levels <= slack
+        overlap = self.system.approach(self.state) - levels > 0.5 * slack
+        for other in np.flatnonzero(were_apart & overlap).tolist():
+            if other not in self.active:
                 self.begin_contact(other)

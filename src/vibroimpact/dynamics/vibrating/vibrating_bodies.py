@@ -12,7 +12,7 @@ from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.dynamics.bounce import Bounce
 from vibroimpact.dynamics.columns import VIBRATING_IMPACT_COLUMNS
-from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact, Piece
+from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact
 from vibroimpact.dynamics.core.surface_friction_records import SlidingSphere
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.impact_conditions import ImpactConditions
@@ -30,6 +30,7 @@ from vibroimpact.dynamics.vibrating.fluid_motion import free_motion
 from vibroimpact.dynamics.vibrating.growth_of_differences import NeighbouringDrops
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.next_touch import next_touch
+from vibroimpact.dynamics.vibrating.recorded_contact import PiecesOfImpacts
 from vibroimpact.dynamics.vibrating.rest_motion import RestMotion, bring_to_rest
 from vibroimpact.dynamics.vibrating.sliding_contact import sliding_contacts
 from vibroimpact.dynamics.vibrating.surface_friction import (
@@ -251,6 +252,7 @@ class VibratingBodies:
         self.lying: list[RestMotion | None] = [None] * size
         self.remaining_energy = np.full(size, np.nan)
         self.neighbours = NeighbouringDrops(problem, mass, self.system) if sensitive else None
+        self.last_impacts: list[ElasticImpact] = []
 
     def state(self, drop: int, gap: float, velocity: float) -> State:
         """Return the state of a drop whose sphere has a gap [m] and a velocity upwards [m/s]."""
@@ -422,6 +424,7 @@ class VibratingBodies:
             self._store(drop, impact.state)
             self._leave_or_rest(drop, impact)
             impacts.append(impact)
+        self.last_impacts = impacts
         max_force = np.array([impact.max_force for impact in impacts])
         time_of_max_force = np.array([impact.time_of_max_force for impact in impacts])
         return contact_of(impacts, conditions.law), max_force, time_of_max_force
@@ -563,7 +566,9 @@ class VibratingBodies:
 
         It is empty where it is not asked for.
         """
-        return np.zeros(0) if self.neighbours is None else self.neighbours.follow(bounce)
+        if self.neighbours is None:
+            return np.zeros(0)
+        return self.neighbours.follow(bounce, [impact.sections for impact in self.last_impacts])
 
     def energies(self) -> dict[str, Floats]:
         """Return the entries of the energy balance [J] (B,); those of local elements are apart."""
@@ -588,12 +593,9 @@ class VibratingBodies:
 
 def contact_of(impacts: list[ElasticImpact], law: CompliantLaw) -> Contact:
     """Return the impacts of several drops as one contact; `law` holds their laws before it."""
-    pieces = []
     final_delta = []
     final_rate = []
-    for drop, impact in enumerate(impacts):
-        for part in impact.parts:
-            pieces.append(Piece(np.array([drop]), np.array([part.start]), part.motion, law))
+    for impact in impacts:
         mass = float(impact.system.shape[0, 0]) ** -2
         depth, fall_speed = centre_of(impact.state, mass)
         final_delta.append(float(depth))
@@ -607,7 +609,7 @@ def contact_of(impacts: list[ElasticImpact], law: CompliantLaw) -> Contact:
         for name in law.memories()
     }
     return Contact(
-        pieces=pieces,
+        pieces=PiecesOfImpacts([impact.sections for impact in impacts], law),
         outcome=gathered("outcome").astype(np.int8),
         duration=gathered("duration"),
         final_delta=np.array(final_delta),

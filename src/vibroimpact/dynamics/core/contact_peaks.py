@@ -1,0 +1,72 @@
+"""Largest force and largest indentation of a contact, from the parts that were written."""
+
+from __future__ import annotations
+
+from vibroimpact.compiled import compiled
+from vibroimpact.dynamics.core.attempt import basis_of, time_at
+from vibroimpact.dynamics.core.contact_records import Parts, Peaks
+from vibroimpact.dynamics.core.linear import largest_of
+from vibroimpact.dynamics.core.peak import peak_of, peak_of_force
+from vibroimpact.dynamics.core.records import Bases, Law
+
+# of the largest nodal value: parts whose nodal values stay below can't hold the peak
+_NEAR = 0.98
+
+
+@compiled(
+    lambda t: t.of(Peaks)(
+        t.of(Bases),
+        t.of(Law),
+        t.of(Peaks),
+        t.of(Parts),
+        t.tuple(t.integer, t.integer),
+        t.tuple(t.real, t.real),
+    )
+)
+def peaks_with(
+    bases: Bases,
+    law: Law,
+    before: Peaks,
+    parts: Parts,
+    between: tuple[int, int],
+    at_nodes: tuple[float, float],
+) -> Peaks:
+    """Return the peaks of a contact with those of some parts under one law.
+
+    They are located only in parts whose nodal values come near the largest.
+
+    Parameters
+    ----------
+    bases : Bases
+        The Radau rule under the three maps of time.
+    law : Law
+        The law in these parts.
+    before : Peaks
+        The peaks without these parts.
+    parts : Parts
+        The parts of the contact.
+    between : tuple of two ints
+        The first of the parts, and the one after the last.
+    at_nodes : tuple of two floats
+        Largest force [N] and largest indentation [m] of the contact at a node so far.
+    """
+    largest_force, deepest = at_nodes
+    force = before.force
+    time_of_force = before.time_of_force
+    indentation = before.indentation
+    time_of_indentation = before.time_of_indentation
+    for part in range(between[0], between[1]):
+        if parts.kind[part] == 0:
+            continue
+        basis = basis_of(bases, parts.time_map[part])
+        if largest_of(parts.force[part]) >= _NEAR * largest_force:
+            x, value = peak_of_force(basis, law, parts.delta[part], parts.rate[part])
+            if value > force:
+                force = value
+                time_of_force = parts.start[part] + parts.length[part] * time_at(basis, x)
+        if largest_of(parts.indentation[part, 1:]) >= _NEAR * deepest:
+            x, value = peak_of(basis, parts.indentation[part])
+            if value > indentation:
+                indentation = value
+                time_of_indentation = parts.start[part] + parts.length[part] * time_at(basis, x)
+    return Peaks(force, time_of_force, indentation, time_of_indentation)
