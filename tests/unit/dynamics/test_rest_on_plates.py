@@ -285,7 +285,7 @@ def test_a_write_off_of_less_than_nothing_fails_the_run(monkeypatch: pytest.Monk
         laws=(LOSSY,),
         height=0.2,
         rest_speed=0.01,
-        oblique=vi.Oblique(),  # the core follows other drops, and calls no function of Python
+        air=vi.Air(),  # drops in a vacuum call no function of Python
     )
     with pytest.raises(
         vi.ComputationError,
@@ -296,8 +296,8 @@ def test_a_write_off_of_less_than_nothing_fails_the_run(monkeypatch: pytest.Monk
 
 def test_a_ledger_that_does_not_close_fails_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
-        "vibroimpact.dynamics.rigid.drops._mechanical_energy",
-        lambda state: np.full(state.shape[1], 1.0),
+        "vibroimpact.dynamics.rigid.drops._energy_of",
+        lambda problem, drops, start: np.full(len(drops.phases), 1.0),
     )
     problem = vi.Problem(
         sphere=vi.Body(mass=1.0, contact_offset=0.1),
