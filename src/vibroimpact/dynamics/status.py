@@ -192,7 +192,7 @@ def _time(run: Ended, time: float, significant: int) -> str:
     Each flight is as certain as the impact before it.
     """
     begin = run.impacts["time_s"]
-    if not len(begin) or not np.isfinite(time):
+    if not len(begin) or not np.isfinite(time) or time == 0.0:
         return f"{time:.{significant}g}"
     change = change_by_impact(run.impacts, run.problem.tolerance)
     flights = np.diff(begin, append=max(time, float(begin[-1])))

@@ -307,3 +307,16 @@ def test_a_ledger_that_does_not_close_fails_the_run(monkeypatch: pytest.MonkeyPa
     )
     with pytest.raises(vi.ComputationError, match="the energy ledger does not close"):
         vi.simulate(problem)
+
+
+def test_a_sphere_that_rests_where_it_first_touches_says_so() -> None:
+    """Without a time of flight there is nothing of which the time of rest could be uncertain."""
+    response = vi.simulate(
+        vi.Problem(
+            sphere=vi.Body(mass=1.0, contact_offset=0.1),
+            plate=vi.rigid_plate(),
+            laws=(vi.laws.Newton(restitution=0.0),),
+            speed=1.0,
+        )
+    )
+    assert response.status.startswith("At rest after 1 impact")
