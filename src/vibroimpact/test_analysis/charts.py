@@ -130,7 +130,7 @@ def _responses(correlation: Correlation) -> Chart:
         scale = Axis(
             quantity, f"{sensor.unit}/N" if correlation.hits else sensor.unit, log=True, range=shown
         )
-        marks: tuple[Mark, ...] = (*lines, Rug(computed, "modes of the case"))
+        marks: tuple[Mark, ...] = (*lines, Rug(computed, "modes of the case", "fit"))
         panels = [
             Panel(
                 axis,

@@ -138,7 +138,7 @@ def _chart(measured: MeasuredModes) -> Chart:
     for response, value in zip(measured.responses[:MOST], measured.value, strict=False):
         lines, shown = magnitude_lines(measured.frequency, (value,), (("measured", "measured"),))
         scale = Axis("Magnitude", response.unit, log=True, range=shown)
-        marks: tuple[Mark, ...] = (*lines, Rug(places, "measured modes"))
+        marks: tuple[Mark, ...] = (*lines, Rug(places, "measured modes", "measured"))
         rows.append((Panel(axis, scale, marks, shortened(visible(response.name), 40)),))
     caption = (
         "Measured frequency responses. Ticks mark the modes that were "

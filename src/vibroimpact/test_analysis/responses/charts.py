@@ -83,7 +83,9 @@ def _responses(correlation: ResponseCorrelation) -> Chart:
             for response, (name, role) in zip(both, _LOOKS, strict=True)
         ]
         title = f"{shortened(visible(sensor.name), 40)}: FRAC {correlation.frac[number]:.3f}"
-        rows.append((Panel(axis, scale, (*magnitudes, Rug(computed, "modes of the case")), title),))
+        rows.append(
+            (Panel(axis, scale, (*magnitudes, Rug(computed, "modes of the case", "fit")), title),)
+        )
         rows.append((Panel(axis, turns, tuple(phases), "Phase"),))
         if correlation.coherence is not None and not np.isnan(correlation.coherence[number]).any():
             level = Axis("Coherence", range=(0.0, 1.02))
