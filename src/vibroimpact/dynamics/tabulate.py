@@ -16,7 +16,8 @@ from vibroimpact.dynamics.rest import Rest
 from vibroimpact.dynamics.run import Run
 from vibroimpact.errors import InputError
 
-_BLOCK = 2000  # drops that run together, for the cache
+BLOCK = 2000
+"""Drops that run together: more take memory and no less time."""
 
 
 def tabulate(
@@ -71,7 +72,7 @@ def tabulate(
         raise InputError(f"{threads} is no number of threads; give 1 or more", "threads")
     stated = problem.to_problem()
     size = math.prod(stated.shape)
-    block = min(_BLOCK, math.ceil(size / threads))
+    block = min(BLOCK, math.ceil(size / threads))
     blocks = [stated]
     if block < size:
         blocks = [stated.take(slice(begin, begin + block)) for begin in range(0, size, block)]

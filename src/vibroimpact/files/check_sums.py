@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 
 from vibroimpact.errors import InputError
 from vibroimpact.files.json_reading import JSON_TABLE, read_json_table
+from vibroimpact.files.json_text import json_file_text
 from vibroimpact.files.reading import FileKind, with_path
 
 SHA256 = "sha256"
@@ -44,41 +45,8 @@ def digest(content: Any) -> str:
 
 
 def sealed(table: Mapping[str, Any]) -> bytes:
-    """Return a table as JSON in UTF-8 that includes its own checksum.
-
-    Examples
-    --------
-    >>> text = sealed({"speeds": [1.0, 2.0], "rows": [{"a": 1}, {"a": 2}]}).decode()
-    >>> for line in text.splitlines()[:6]:
-    ...     print(line)
-    {
-      "speeds": [1.0, 2.0],
-      "rows": [
-        {"a": 1},
-        {"a": 2}
-      ],
-    """
-    return f"{_json_text({**table, SHA256: digest(table)}, 0)}\n".encode()
-
-
-def _json_text(value: Any, depth: int) -> str:
-    """Return JSON with a key of a mapping, a row of a table and a list of numbers a line each."""
-    if isinstance(value, Mapping) and value:
-        lines = [f"{json.dumps(key)}: {_json_text(item, depth + 1)}" for key, item in value.items()]
-        brackets = "{}"
-    elif isinstance(value, (list, tuple)) and _holds_rows(value):
-        lines = [json.dumps(row, allow_nan=False) for row in value]
-        brackets = "[]"
-    else:
-        return json.dumps(value, allow_nan=False)
-    margin = "\n" + "  " * depth
-    content = ("," + margin + "  ").join(lines)
-    return f"{brackets[0]}{margin}  {content}{margin}{brackets[1]}"
-
-
-def _holds_rows(values: Sequence[Any]) -> bool:
-    """Does a list hold mappings or lists?"""
-    return any(isinstance(value, (Mapping, list, tuple)) for value in values)
+    """Return a table as JSON in UTF-8 that includes its own checksum."""
+    return json_file_text({**table, SHA256: digest(table)}).encode()
 
 
 def read_sealed(path: Path, kind: FileKind = JSON_TABLE) -> dict[str, Any]:

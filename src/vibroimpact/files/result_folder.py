@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
@@ -16,6 +15,7 @@ import tomli_w
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import atomic_folder
 from vibroimpact.files.check_sums import CHECK_SUMS, digests_of, sealed
+from vibroimpact.files.json_text import json_file_text
 from vibroimpact.files.new_folders import made_folder
 from vibroimpact.files.recover import recover
 
@@ -130,8 +130,7 @@ def write_summary(
         are not there are left out.
     """
     if not checked_files:
-        text = json.dumps(summary, indent=2, allow_nan=False) + "\n"
-        (folder / SUMMARY).write_text(text, encoding="utf-8")
+        (folder / SUMMARY).write_text(json_file_text(summary), encoding="utf-8")
         return
     check_sums = digests_of(folder, checked_files)
     (folder / SUMMARY).write_bytes(sealed({**summary, CHECK_SUMS: check_sums}))

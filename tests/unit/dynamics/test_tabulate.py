@@ -343,7 +343,7 @@ def test_to_rest_captured_and_in_blocks(monkeypatch: pytest.MonkeyPatch) -> None
     assert {vi.Outcome.REST_SPEED, vi.Outcome.CAPTURED} == set(whole.outcomes)
     assert_agrees(whole, exact, 1e-7)
     told: list[float] = []
-    monkeypatch.setattr(module, "_BLOCK", 5)
+    monkeypatch.setattr(module, "BLOCK", 5)
     parts = vi.tabulate(stated, told.append)
     assert told == pytest.approx([5 / 12, 10 / 12, 1.0])
     assert parts.outcomes == whole.outcomes

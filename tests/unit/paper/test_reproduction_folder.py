@@ -455,7 +455,7 @@ def test_earlier_parts_stay_when_a_part_fails(
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
 @pytest.mark.parametrize(
     "step",
-    ["charts.files.save_charts", "paper.report.folder.pack", "paper.report.folder.json.dumps"],
+    ["charts.files.save_charts", "paper.report.folder.pack", "files.json_text.json.dumps"],
 )
 def test_a_part_is_there_with_its_figure_or_not_at_all(
     copy: Path, monkeypatch: pytest.MonkeyPatch, step: str, error: BaseException

@@ -16,13 +16,10 @@ from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate
-from vibroimpact.dynamics.tabulate import tabulate
+from vibroimpact.dynamics.tabulate import BLOCK, tabulate
 
 _TOLERANCE = 1e-11
 """Relative tolerance of an impact; with a smaller one the impacts are followed one by one."""
-
-AT_ONCE = 2000
-"""Impacts that are computed together, as `tabulate` does: more are divided there and joined."""
 
 
 def single_impacts(problem: Problem, law: ContactLaw, speeds: Floats) -> dict[str, Floats]:
@@ -58,8 +55,8 @@ def single_impacts(problem: Problem, law: ContactLaw, speeds: Floats) -> dict[st
     [6.838627]
     """
     blocks = []
-    for begin in range(0, len(speeds), AT_ONCE):
-        rows = slice(begin, begin + AT_ONCE)
+    for begin in range(0, len(speeds), BLOCK):
+        rows = slice(begin, begin + BLOCK)
         blocks.append(_single_impacts(problem, law.take(rows), speeds[rows]))
     if len(blocks) == 1:
         return blocks[0]

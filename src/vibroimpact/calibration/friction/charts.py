@@ -69,8 +69,7 @@ def _angle_chart(calibration: FrictionCalibration, curves: list[Curve]) -> Chart
         if name not in impacts.measured and name not in ("tangential_restitution", "rebound_angle"):
             continue
         marks: list[Mark] = [
-            Line(angle, outcomes[name], sentence, role)
-            for angle, _, outcomes, sentence, role in curves
+            Line(angle, outcomes[name], label, role) for angle, _, outcomes, label, role in curves
         ]
         if not curves:
             marks.append(

@@ -10,7 +10,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.calibration.fit.matching import match
-from vibroimpact.calibration.fit.single_impacts import AT_ONCE, oblique_impacts
+from vibroimpact.calibration.fit.single_impacts import oblique_impacts
 from vibroimpact.calibration.fit.tunables import law_parameter
 from vibroimpact.calibration.fit.uncertainty import with_nearest_bound
 from vibroimpact.calibration.friction.least_squares import Bounds
@@ -21,6 +21,7 @@ from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.tabulate import BLOCK
 from vibroimpact.errors import InputError, choices
 from vibroimpact.ranges import Range
 
@@ -182,8 +183,8 @@ class ImpactModel:
         shape = (len(values), len(self.speeds))
         pairs = np.arange(len(values) * len(self.speeds))
         blocks = [
-            self._impacts(values, pairs[begin : begin + AT_ONCE])
-            for begin in range(0, len(pairs), AT_ONCE)
+            self._impacts(values, pairs[begin : begin + BLOCK])
+            for begin in range(0, len(pairs), BLOCK)
         ]
         return {
             name: np.concatenate([block[name] for block in blocks]).reshape(shape)

@@ -189,8 +189,7 @@ def collide_at_once(separation: float, state: Floats, row: Floats) -> int:
     write_rebound(state, row)
     if not is_slow(state):
         return IN_FLIGHT
-    limit = end_of_bounces(state, row)
-    state[END_TIME] = limit if limit < math.inf else state[TIME]
+    limit = end_by_bounces(state, row)
     lie_still(state, limit, 0.0, 0.0, 0.0)
     return END_BY_REST_SPEED
 
@@ -299,8 +298,7 @@ def leave(
     phase = release(state, row, contact, compressed_law, touch_level)
     if phase != IN_FLIGHT or not is_slow(state):
         return phase
-    limit = end_of_bounces(state, row)
-    state[END_TIME] = limit if limit < math.inf else state[TIME]
+    limit = end_by_bounces(state, row)
     coefficients = next_coefficients
     if waits:
         coefficients = compressed_law.coefficients
@@ -396,13 +394,16 @@ def is_slow(state: Floats) -> bool:
 
 
 @compiled(lambda t: t.real(t.vector, t.vector))
-def end_of_bounces(state: Floats, row: Floats) -> float:
-    """Return when infinitely many bounces with the last restitution would end [s].
+def end_by_bounces(state: Floats, row: Floats) -> float:
+    """End the run of a drop when infinitely many bounces with the last restitution would, and
+    return that time [s]; it ends now where they would not.
 
     Their flights are a geometric series with the ratio of the last restitution e, whose sum is that
     of the first, 2 v/g, over 1 - e.
     """
     missing = 1.0 - row[RESTITUTION]
+    limit = math.inf
     if state[GRAVITY] > 0.0 and missing > _LEAST_MISSING:
-        return float(state[TIME] + 2.0 * state[VELOCITY] / state[GRAVITY] / missing)
-    return math.inf
+        limit = float(state[TIME] + 2.0 * state[VELOCITY] / state[GRAVITY] / missing)
+    state[END_TIME] = limit if limit < math.inf else state[TIME]
+    return limit

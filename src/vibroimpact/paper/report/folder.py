@@ -4,7 +4,6 @@ report on those available.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import partial
@@ -20,7 +19,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import write_into
 from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, sealed
 from vibroimpact.files.recover import recover
-from vibroimpact.files.result_folder import FIGURES, SUMMARY, new_folder
+from vibroimpact.files.result_folder import FIGURES, new_folder, write_summary
 from vibroimpact.paper.report.outline import PARTS, ReportPart, find_parts, render_part
 from vibroimpact.paper.report.reproduction import (
     PARTS_FOLDER,
@@ -100,7 +99,7 @@ def reproduce_paper(
                 "version": __version__,
                 "reproduction": True,
             }
-            (working / SUMMARY).write_text(json.dumps(summary) + "\n", encoding="utf-8")
+            write_summary(summary, working)
     runs = Runs(tell)
     try:
         for done, part in enumerate(parts):
