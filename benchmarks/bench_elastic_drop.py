@@ -17,7 +17,7 @@ from scipy.integrate import solve_ivp
 import vibroimpact as vi
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sensor import Sensor
-from vibroimpact.dynamics.vibrating.vibrating_bodies import system_of
+from vibroimpact.dynamics.vibrating.drop_system import system_of
 
 REPEATS = 3
 

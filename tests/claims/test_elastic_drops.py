@@ -21,7 +21,7 @@ from vibroimpact.cases import sensor_doubts
 from vibroimpact.cases.fields.size_limits import MOST_ITEMS
 from vibroimpact.cases.validity import modes_left_out, plate_mesh, plate_waves, small_contact
 from vibroimpact.dynamics.sensors import antialias
-from vibroimpact.dynamics.vibrating import elastic_impact
+from vibroimpact.dynamics.vibrating import drop_at_start
 from vibroimpact.structures.plate_waves import bending_factor
 from vibroimpact.structures.sphere_compliance import finite_sphere_factor
 
@@ -222,5 +222,5 @@ def test_thresholds_of_doubts() -> None:
 
 
 def test_constants() -> None:
-    says(PAGE, "a ride is integrated for {} steps", elastic_impact.MOST_STEPS)
+    says(PAGE, "a ride is integrated for {} steps", drop_at_start.MOST_STEPS)
     says(PAGE, "Sensors may be at up to {} points of the plate", MOST_ITEMS)

@@ -14,7 +14,7 @@ from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.dynamics import air, liquid
 from vibroimpact.dynamics.core import phase_contact
 from vibroimpact.dynamics.rigid import line_contact
-from vibroimpact.dynamics.vibrating import elastic_impact
+from vibroimpact.dynamics.vibrating import drop_at_start
 
 PAGE = "docs/method.md"
 WATER, QUARTZ = vi.Liquid(), 2650.0
@@ -25,8 +25,8 @@ def test_bounds() -> None:
     says(PAGE, "all contacts below a tolerance of {}.", line_contact._TIGHTEST)
     assert line_contact._OF_STEP == 0.01  # a hundredth
     says(PAGE, "a hundredth of the tolerance, or {} if that is larger", line_contact._LEAST_ERROR)
-    says(PAGE, "It is integrated for {} steps of contact", elastic_impact.MOST_STEPS)
-    says(PAGE, "up to that time with at most {};", elastic_impact.MOST_STEPS_TO_A_TIME)
+    says(PAGE, "It is integrated for {} steps of contact", drop_at_start.MOST_STEPS)
+    says(PAGE, "up to that time with at most {};", drop_at_start.MOST_STEPS_TO_A_TIME)
     says(PAGE, "more than {} % is refused", 100.0 * air._DENSEST)
 
 

@@ -17,7 +17,7 @@ from agreement import Against, Agrees
 from turning_history import by_turning_points
 from vibroimpact.dynamics.core.tangential_history import history_after
 from vibroimpact.dynamics.oblique.tangential_history import tangential_history
-from vibroimpact.dynamics.vibrating.vibrating_bodies import slices_of
+from vibroimpact.dynamics.vibrating.drop_system import slices_of
 from vibroimpact.structures.modal_model import ModalBasis
 
 AGAINST = Against(

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from vibroimpact.arrays import Array
+from vibroimpact.arrays import Array, Floats
 
 
 @dataclass(frozen=True)
@@ -54,6 +54,11 @@ class QuasiStatic:
     @cached_property
     def _nonzero(self) -> bool:
         return bool(np.any(self.linear) or np.any(self.unit))
+
+    @property
+    def coefficients(self) -> Floats:
+        """C, 1/(E R), c0, c1, c2, c3 and F_R of a single compliance (7,)."""
+        return np.array([self.linear, self.unit, *self.factors, self.force], dtype=float)
 
     def indentation(self, force: Array) -> Array:
         """Return s [m] at a force [N]."""

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.dynamics.flight_in_fluid import first_flights
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.run_state import RunState
+from vibroimpact.dynamics.run_rules import start_of
 
 
 def first_touch(problem: Problem) -> float:
@@ -30,7 +32,18 @@ def first_touch(problem: Problem) -> float:
     >>> round(first_touch(drop), 6)  # sqrt(2 h/g)
     0.451601
     """
-    run = RunState(problem)
-    drops = np.zeros(1, dtype=np.intp)
-    times, _, _ = run.bodies.next_touch(drops, run.flights(drops), run.law(drops))
-    return float(times[0])
+    # a drop loads only what it needs
+    if problem.vibrates:
+        from vibroimpact.dynamics.vibrating.drops import drop_of
+
+        return drop_of(problem).first_touch()
+    if problem.shaken:
+        from vibroimpact.dynamics.shaken.hard_drop import HardDrop
+
+        return HardDrop(problem).first_touch()
+    gap, velocity = start_of(problem)
+    law = problem.law_of(0)
+    level = -law.touch_level if isinstance(law, CompliantLaw) else 0.0
+    flight = first_flights(problem, np.array([gap]), np.array([velocity]))
+    touch, _ = flight.touch(np.array([level]))
+    return float(touch[0])

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.arrays import Drops, Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.oblique.state import Sphere, State
 
 
@@ -22,10 +22,6 @@ class Flight:
     gap: Floats
     velocity: Floats
     gravity: Floats
-
-    def take(self, drops: Drops) -> Flight:
-        """Return the flights of some of the drops."""
-        return Flight(self.start[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
 
     def carry(self, sphere: Sphere, state: State, time: Floats) -> State:
         """Return the state along the plate at times [s], from that at the start of the flight."""

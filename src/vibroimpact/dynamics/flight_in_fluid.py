@@ -79,20 +79,6 @@ class FluidFlight(Flight):
     fluid: Fluid
     along: tuple[Floats, Floats]
 
-    def take(self, drops: Drops) -> FluidFlight:
-        """Return the flights of some of the drops."""
-        velocity, acceleration = self.along
-        return FluidFlight(
-            start=self.start[drops],
-            gap=self.gap[drops],
-            velocity=self.velocity[drops],
-            gravity=self.gravity[drops],
-            radius=self.radius[drops],
-            density=self.density[drops],
-            fluid=self.fluid.take(drops),
-            along=(velocity[:, drops], acceleration[:, drops]),
-        )
-
     def after(self, time: Floats) -> FluidFlight:
         """Return the flights from times on [s] (B,)."""
         moving = self._moving(time)
@@ -291,31 +277,40 @@ def _time_to_fall(height: Floats, fall_speed: Floats, half_acceleration: Floats)
     return np.where(height > 0.0, time, 0.0)
 
 
-def flights_of(problem: Problem, gap: Floats, velocity: Floats) -> FluidFlight:
-    """Return flights through the air or the liquid of a single drop.
+def flight_of(
+    problem: Problem, start: Floats, gap: Floats, velocity: Floats, along: Floats
+) -> Flight:
+    """Return flights of the sphere of a single drop: in a vacuum, or through its air or liquid.
 
-    They start from gaps [m] with upward velocities [m/s] (n,). Along the plate they begin with the
-    velocity of the drop.
+    Parameters
+    ----------
+    problem : Problem
+        The drop.
+    start, gap, velocity : array, shape (n,)
+        Starts [s], gaps [m] and upward velocities [m/s] then.
+    along : array, shape (2, n) or (0, n)
+        Velocities along the plate then [m/s]; (0, n) where all motion is along the normal.
     """
-    assert problem.fluid is not None
     ones = np.ones(len(gap))
-    velocity_along = np.zeros(0)
-    gravity_along = np.zeros(0)
+    inertia = problem.flight_inertia
+    gravity = problem.net_gravity / inertia * ones
+    if problem.fluid is None:
+        return Flight(start, gap, velocity, gravity)
+    pull = np.zeros((0, len(gap)))
     if problem.oblique is not None:
-        velocity_along = np.array(problem.oblique.velocity)
-        gravity_along = np.array(problem.oblique.gravity)
+        pull_along = np.array(problem.oblique.gravity) * problem.net_weight / inertia
+        pull = pull_along[:, None] * ones
     mass = problem.sphere.mass * ones
     radius = problem.sphere.contact_offset * ones
-    gravity_ratio = problem.net_weight / problem.flight_inertia
     return FluidFlight(
-        start=0.0 * ones,
+        start=start,
         gap=gap,
         velocity=velocity,
-        gravity=problem.gravity * gravity_ratio * ones,
+        gravity=gravity,
         radius=radius,
         density=mean_density(mass, radius),
         fluid=problem.fluid,
-        along=(velocity_along[:, None] * ones, gravity_along[:, None] * gravity_ratio * ones),
+        along=(along, pull),
     )
 
 
@@ -324,5 +319,18 @@ def speed_of_fall(problem: Problem) -> float:
     assert problem.height is not None
     gap = np.array([problem.height - problem.sphere.contact_offset])
     velocity = np.array([problem.velocity], dtype=float)
-    _, speed = flights_of(problem, gap, velocity).touch(np.zeros(1))
+    _, speed = first_flights(problem, gap, velocity).touch(np.zeros(1))
     return float(speed[0])
+
+
+def first_flights(problem: Problem, gap: Floats, velocity: Floats) -> Flight:
+    """Return flights of the sphere of a single drop from its start.
+
+    They start from gaps [m] with upward velocities [m/s] (n,). Along the plate they begin with the
+    velocity of the drop.
+    """
+    ones = np.ones(len(gap))
+    along = np.zeros((0, len(gap)))
+    if problem.oblique is not None:
+        along = np.array(problem.oblique.velocity)[:, None] * ones
+    return flight_of(problem, 0.0 * ones, gap, velocity, along)

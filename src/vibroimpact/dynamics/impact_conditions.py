@@ -31,10 +31,6 @@ class ImpactConditions:
     speed_scale: Floats
     floor: Floats
 
-    def take(self, drops: Indices) -> ImpactConditions:
-        """Return the conditions of some of the drops, in rising order."""
-        return self if len(drops) == len(self.mass) else self.pick(drops)
-
     def pick(self, drops: Indices) -> ImpactConditions:
         """Return the conditions of some drops in any order."""
         arrays = (

@@ -1,68 +1,41 @@
-"""The impact table of a run while it grows, one row per impact."""
+"""Tables of the impacts of single drops, and of several drops side by side."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
 
-_FIRST = 4  # rows of the first block; each further block doubles the capacity
 
-
-class ImpactRows:
-    """Impact table of B drops; entries that a drop does not have are NaN.
-
-    Parameters
-    ----------
-    columns : iterable of str
-        The names of the columns.
-    size : int
-        Number of drops, B.
+def table_of(rows: Sequence[Mapping[str, float]], columns: Sequence[str]) -> dict[str, Floats]:
+    """Return columns of the impacts of one drop (impacts,); what a row lacks is NaN.
 
     Examples
     --------
-    >>> rows = ImpactRows(["time_s"], 2)
-    >>> rows.add()["time_s"][0] = 0.5
-    >>> len(rows), rows.table()["time_s"].tolist()
-    (1, [[0.5], [nan]])
+    >>> table_of([{"time_s": 0.5}, {}], ["time_s"])
+    {'time_s': array([0.5, nan])}
     """
+    return {name: np.array([row.get(name, np.nan) for row in rows]) for name in columns}
 
-    def __init__(self, columns: Iterable[str], size: int) -> None:
-        self._columns = tuple(columns)
-        self._size = size
-        self._blocks: list[Floats] = []  # (columns, rows, B)
-        self._count = 0
-        self._room = 0  # rows in all blocks
 
-    def __len__(self) -> int:
-        return self._count
+def stacked_tables(
+    tables: Sequence[Mapping[str, Floats]], columns: Sequence[str]
+) -> dict[str, Floats]:
+    """Return columns of the tables of several drops, (B, impacts).
 
-    def add(self) -> dict[str, Floats]:
-        """Append a row of NaN and return its columns (B,) for writing."""
-        if self._count == self._room:
-            rows = max(_FIRST, self._room)
-            self._blocks.append(np.full((len(self._columns), rows, self._size), np.nan))
-            self._room += rows
-        self._count += 1
-        return self._row(self._blocks[-1], self._count - 1 - self._room)
+    Impacts that a drop does not have are NaN.
 
-    @property
-    def first(self) -> dict[str, Floats]:
-        """The columns of the first row (B,)."""
-        return self._row(self._blocks[0], 0)
-
-    @property
-    def last(self) -> dict[str, Floats]:
-        """The columns of the last row (B,)."""
-        return self._row(self._blocks[-1], self._count - 1 - self._room)
-
-    def table(self) -> dict[str, Floats]:
-        """Return the columns of all rows, (B, impacts)."""
-        no_rows = np.zeros((len(self._columns), 0, self._size))
-        table = np.concatenate([no_rows, *self._blocks], axis=1)[:, : self._count]
-        return {name: column.T for name, column in zip(self._columns, table, strict=True)}
-
-    def _row(self, block: Floats, number: int) -> dict[str, Floats]:
-        return dict(zip(self._columns, block[:, number], strict=True))
+    Examples
+    --------
+    >>> stacked_tables([{"time_s": np.array([0.5, 0.7])}, {"time_s": np.zeros(0)}], ["time_s"])
+    {'time_s': array([[0.5, 0.7],
+           [nan, nan]])}
+    """
+    most = max(len(next(iter(table.values()))) for table in tables)
+    stacked = {name: np.full((len(tables), most), np.nan) for name in columns}
+    for number, table in enumerate(tables):
+        for name in columns:
+            stacked[name][number, : len(table[name])] = table[name]
+    return stacked

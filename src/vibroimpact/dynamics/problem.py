@@ -545,14 +545,6 @@ class Problem:
         law = self.laws[0]
         return self.same_spot and isinstance(law, CompliantLaw) and law.lasting
 
-    @property
-    def is_rigid_and_still(self) -> bool:
-        """Whether rigid bodies meet in a vacuum, on a plate that does not move.
-
-        The core follows such drops from start to end.
-        """
-        return not self.vibrates and self.motion is None and self.fluid is None
-
     def law_of(self, impact: int) -> ContactLaw:
         """Return the law of an impact, counted from 0; the last one goes on."""
         return self.laws[min(impact, len(self.laws) - 1)]
@@ -565,6 +557,12 @@ class Problem:
         return law.changed(
             {name: held(function, speed) for name, function in self.by_speed.items()}
         )
+
+    def alone(self) -> list[Problem]:
+        """Return the problems of the drops, one by one."""
+        if self.shape == ():
+            return [self]
+        return [self.take(drop) for drop in range(self.shape[0])]
 
     def take(self, drop: int | slice) -> Problem:
         """Return the problem of one drop of a batch, or of some."""

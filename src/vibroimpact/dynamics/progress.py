@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from vibroimpact.arrays import Floats
@@ -40,3 +42,18 @@ def fraction_done(
         slowest = np.nanmin(np.clip(decay / decay_at_rest, 0.0, 1.0), initial=1.0)
         fraction = max(fraction, float(slowest))
     return fraction
+
+
+def of_several(
+    progress: Callable[[float], None] | None, number: int, drops: int
+) -> Callable[[float], None] | None:
+    """Return what tells the fraction done of several drops from that of the one with a number.
+
+    Examples
+    --------
+    >>> of_several(print, 1, 4)(0.5)
+    0.375
+    """
+    if progress is None:
+        return None
+    return lambda fraction: progress((number + fraction) / drops)

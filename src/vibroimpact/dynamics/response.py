@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.dynamics.bounce import Bounce
+from vibroimpact.dynamics.bounce import Bounce, BouncesOfDrops
 from vibroimpact.dynamics.columns import (
     FLUID_HISTORY_COLUMNS,
     HISTORY_COLUMNS,
@@ -28,7 +28,6 @@ from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.rest import Rest
 from vibroimpact.dynamics.rigid.history import rigid_history
-from vibroimpact.dynamics.rigid.recorded_drops import RecordedDrops
 from vibroimpact.dynamics.rigid.segments import RestSegment
 from vibroimpact.dynamics.rigid.timeline import Timeline, end_of, timeline_of
 from vibroimpact.dynamics.sensors.recording import Signal
@@ -70,7 +69,7 @@ class Response(Reported, reported_in="vibroimpact.runs.response_report"):
     rest : Rest
         State of the drops that have come to rest. `rest.left` is what they, and those that ride,
         have left in vibration [J], (B,).
-    bounces : sequence of Bounce or RecordedDrops, optional
+    bounces : sequence of Bounce or BouncesOfDrops, optional
         Flights and contacts, from which histories are read; None where none are kept, as by
         `tabulate`.
 
@@ -94,7 +93,7 @@ class Response(Reported, reported_in="vibroimpact.runs.response_report"):
     outcomes: tuple[Outcome, ...]
     end_time: Floats
     rest: Rest
-    bounces: Sequence[Bounce] | RecordedDrops | None
+    bounces: Sequence[Bounce] | BouncesOfDrops | None
 
     def __len__(self) -> int:
         """Return the number of drops."""
@@ -133,7 +132,7 @@ class Response(Reported, reported_in="vibroimpact.runs.response_report"):
         impacts = {name: column[0] for name, column in self.impacts.items()}
         energy = {name: value[0] for name, value in self.energy.items()}
         bounces = self.bounces
-        if isinstance(bounces, RecordedDrops):
+        if isinstance(bounces, BouncesOfDrops):
             bounces = _bounces_of(bounces, 0)
         return replace(self, impacts=impacts, energy=energy, bounces=bounces)
 
@@ -281,7 +280,7 @@ class Response(Reported, reported_in="vibroimpact.runs.response_report"):
             "sphere" and "plate", (T, modes) [kg^1/2 m]; times a mode's shape they are
             displacements, of a plate relative to its supports.
         """
-        from vibroimpact.dynamics.vibrating.vibrating_bodies import slices_of
+        from vibroimpact.dynamics.vibrating.drop_system import slices_of
 
         flat = np.atleast_1d(np.asarray(times, dtype=float))
         _, sphere, plate = slices_of(self.problem)
@@ -385,7 +384,7 @@ class Response(Reported, reported_in="vibroimpact.runs.response_report"):
     def _bounces(self) -> Sequence[Bounce]:
         """Flights and contacts of one drop."""
         assert self.bounces is not None
-        assert not isinstance(self.bounces, RecordedDrops)
+        assert not isinstance(self.bounces, BouncesOfDrops)
         return self.bounces
 
     def _segment_of(self, times: Floats) -> Indices:
@@ -437,9 +436,6 @@ class Response(Reported, reported_in="vibroimpact.runs.response_report"):
         return np.array([segment.start for segment in segments])
 
 
-def _bounces_of(bounces: Sequence[Bounce] | RecordedDrops, drop: int) -> Sequence[Bounce]:
+def _bounces_of(bounces: Sequence[Bounce] | BouncesOfDrops, drop: int) -> Sequence[Bounce]:
     """Return the flights and contacts of one drop of a batch."""
-    if isinstance(bounces, RecordedDrops):
-        return bounces.of(drop)
-    bounces_of_drop = (bounce.of(drop) for bounce in bounces)
-    return tuple(bounce for bounce in bounces_of_drop if bounce is not None)
+    return bounces.of(drop) if isinstance(bounces, BouncesOfDrops) else bounces

@@ -3,18 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
-import numpy as np
-
-from vibroimpact.dynamics.bounce import Bounce
-from vibroimpact.dynamics.end_of_run import response_of
+from vibroimpact.dynamics.follow import follow
 from vibroimpact.dynamics.outcome import Outcome
-from vibroimpact.dynamics.packed_list import PackedList
-from vibroimpact.dynamics.problem import Problem, StatesProblem
+from vibroimpact.dynamics.problem import StatesProblem
 from vibroimpact.dynamics.response import Response
-from vibroimpact.dynamics.run import Run
-from vibroimpact.dynamics.shaken.statement import PlateMotion
 from vibroimpact.errors import ComputationError, InputError
 
 
@@ -66,33 +59,12 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
             f"simulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}"
         )
     stated = problem.to_problem()
-    # Newton iterates may overflow; results that are not finite are detected and retried
-    with np.errstate(all="ignore"):
-        if stated.is_rigid_and_still:
-            # a drop of bodies that vibrate does not load it
-            from vibroimpact.dynamics.rigid.drops import follow
-
-            response = follow(stated, progress, keeps_bounces=True)
-        else:
-            response = _advanced(stated, progress)
+    response = follow(stated, progress, keeps_bounces=True)
     if stated.shape == ():
         response = response.squeezed()
     if response.problem.shape == () and response.outcomes[0] is Outcome.FAILED:
         raise ComputationError(response.status)
     return response
-
-
-def _advanced(problem: Problem, progress: Callable[[float], None] | None) -> Response:
-    """Return the response of drops that the core does not follow from start to end."""
-    run = Run(problem)
-    bounces: PackedList[Bounce] | list[Bounce] = []
-    if problem.shape == () and not problem.vibrates:
-        bounces = PackedList[Bounce](PlateMotion)
-    while run.moving.any():
-        bounces.append(run.advance())
-        if progress is not None:
-            progress(run.fraction_done())
-    return replace(response_of(run), bounces=bounces)
 
 
 def simulate_together(problems: Sequence[StatesProblem]) -> list[Response | Exception]:

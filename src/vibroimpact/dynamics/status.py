@@ -50,7 +50,7 @@ def status_of(run: Ended) -> str:
         return f"Stopped {after}, at {_time(run, end, 6)} s: {_riding(run)}, and {words}."
     if outcome is Outcome.RIDING:
         # where bodies vibrate
-        from vibroimpact.dynamics.vibrating.elastic_impact import MOST_STEPS, MOST_STEPS_TO_A_TIME
+        from vibroimpact.dynamics.vibrating.drop_at_start import MOST_STEPS, MOST_STEPS_TO_A_TIME
 
         steps = f"{MOST_STEPS} steps of the integration; give a duration to follow it for longer"
         if run.problem.duration is not None:

@@ -9,11 +9,10 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.end_of_run import response_of
+from vibroimpact.dynamics.follow import follow
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.rest import Rest
-from vibroimpact.dynamics.run import Run
 from vibroimpact.errors import InputError
 
 BLOCK = 2000
@@ -98,17 +97,7 @@ def _tables_of(blocks: Sequence[Problem], threads: int) -> Iterator[Response]:
 
 def _table_of(problem: Problem) -> Response:
     """Return the response of a block of drops, with arrays of a batch, and without its history."""
-    # Newton iterates may overflow; results that are not finite are detected and retried
-    with np.errstate(all="ignore"):
-        if problem.is_rigid_and_still:
-            # a drop of bodies that vibrate does not load it
-            from vibroimpact.dynamics.rigid.drops import follow
-
-            return follow(problem, None, keeps_bounces=False)
-        run = Run(problem)
-        while run.moving.any():
-            run.advance()
-        return response_of(run)
+    return follow(problem, None, keeps_bounces=False)
 
 
 def _joined(problem: Problem, parts: Sequence[Response]) -> Response:

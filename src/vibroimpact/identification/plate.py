@@ -24,7 +24,7 @@ from vibroimpact.dynamics.sensors.place_responses import (
     unit_responses,
 )
 from vibroimpact.dynamics.sensors.sensor import Sensor
-from vibroimpact.dynamics.vibrating.vibrating_bodies import bases_of_plate
+from vibroimpact.dynamics.vibrating.drop_system import bases_of_plate
 from vibroimpact.errors import InputError
 from vibroimpact.identification.setup import Setup, SetupErrors, stretched, with_resonance
 from vibroimpact.structures.finite_elements.surface import Side, place_of

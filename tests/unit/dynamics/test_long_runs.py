@@ -13,8 +13,7 @@ import pytest
 import vibroimpact as vi
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.laws.walton_braun import WaltonBraun
-from vibroimpact.dynamics.impact_rows import ImpactRows
-from vibroimpact.dynamics.packed_list import PackedList
+from vibroimpact.dynamics.impact_rows import stacked_tables, table_of
 from vibroimpact.results import fine_history
 
 BALL = vi.Body(mass=0.09, contact_offset=0.025)
@@ -59,22 +58,19 @@ def test_a_history_takes_little_more_memory_than_its_numbers() -> None:
     assert peak < 1.3 * sum(values.nbytes for values in history.values())
 
 
-def test_legs_are_the_same_when_they_come_back() -> None:
+def test_bounces_are_the_same_when_they_come_back() -> None:
     """A law with a memory, whose bounces hold another law after each deepest point."""
     law = WaltonBraun(stiffness=4e5, restitution=0.6)
     oblique = vi.Oblique(velocity=(0.1, 0.0))
     problem = replace(drop(4, law), air=vi.Air(), oblique=oblique)
-    response = vi.simulate(problem)
-    assert isinstance(response.bounces, PackedList)
-    again, many = PackedList(), [*response.bounces] * 10  # the last ones are not packed
-    for bounce in many:
-        again.append(bounce)
-    for one, other in zip(many, again, strict=True):
+    bounces = vi.simulate(problem).bounces
+    assert bounces is not None
+    assert bounces[0] is not bounces[0]  # made anew
+    for one, other in zip(bounces, bounces, strict=True):
         _same(one, other)
-    assert again[0] is not again[0]
-    law = again[0].contact.pieces[-1].law
+    law = bounces[0].contact.pieces[-1].law
     assert isinstance(law, WaltonBraun)
-    assert law.memories() == again[0].contact.law.memories()
+    assert law.memories() == bounces[0].contact.law.memories()
 
 
 def _same(one: object, other: object) -> None:
@@ -134,20 +130,15 @@ def test_what_is_written_of_a_history_is_bounded(monkeypatch: pytest.MonkeyPatch
 
 
 def test_a_table_of_no_impact_has_all_columns() -> None:
-    assert {
-        name: column.shape for name, column in ImpactRows(["impact", "time_s"], 3).table().items()
-    } == {
+    columns = ["impact", "time_s"]
+    table = stacked_tables([table_of([], columns)] * 3, columns)
+    assert {name: column.shape for name, column in table.items()} == {
         "impact": (3, 0),
         "time_s": (3, 0),
     }
 
 
-def test_rows_stay_what_they_are_as_the_table_grows() -> None:
-    rows = ImpactRows(["time_s"], 2)
-    for number in range(100):
-        rows.add()["time_s"][:] = number
-    rows.first["time_s"][1] = -1.0
-    assert rows.last["time_s"].tolist() == [99.0, 99.0]
-    expected = np.arange(100.0) * np.ones((2, 1))
-    expected[1, 0] = -1.0
-    np.testing.assert_array_equal(rows.table()["time_s"], expected)
+def test_drops_of_fewer_impacts_have_none_where_others_have() -> None:
+    tables = [table_of([{"time_s": 1.0}, {"time_s": 2.0}], ["time_s"]), table_of([], ["time_s"])]
+    expected = np.array([[1.0, 2.0], [np.nan, np.nan]])
+    np.testing.assert_array_equal(stacked_tables(tables, ["time_s"])["time_s"], expected)

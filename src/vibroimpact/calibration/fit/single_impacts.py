@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.observed.matchable import ALONG_PLATE, MATCHABLE, MatchableQuantity
 from vibroimpact.contact.law import ContactLaw
-from vibroimpact.dynamics.flight_in_fluid import flights_of, speed_of_fall
+from vibroimpact.dynamics.flight_in_fluid import first_flights, speed_of_fall
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
@@ -153,7 +153,7 @@ def return_speeds(problem: Problem, speeds: Floats) -> Floats:
     """
     if problem.fluid is None:
         return speeds
-    _, touch_speeds = flights_of(problem, np.zeros(len(speeds)), speeds).touch(np.zeros(1))
+    _, touch_speeds = first_flights(problem, np.zeros(len(speeds)), speeds).touch(np.zeros(1))
     return touch_speeds
 
 

@@ -14,11 +14,19 @@ import math
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.compiled import compiled
+from vibroimpact.compiled import compiled, energies_at
 from vibroimpact.dynamics.core.attempt import beginning_of
 from vibroimpact.dynamics.core.coasting import end_of_coasting
 from vibroimpact.dynamics.core.contact_peaks import peaks_with
-from vibroimpact.dynamics.core.contact_records import Begun, Bodies, Manner, Parts, Progress
+from vibroimpact.dynamics.core.contact_records import (
+    PARTS,
+    RECOIL,
+    Begun,
+    Bodies,
+    Manner,
+    Parts,
+    Progress,
+)
 from vibroimpact.dynamics.core.events import (
     ENDS_AT_NO_FORCE,
     NO_EVENT,
@@ -30,13 +38,19 @@ from vibroimpact.dynamics.core.events import (
 from vibroimpact.dynamics.core.flight import approach_of, lost_in_flight, state_after
 from vibroimpact.dynamics.core.law import law_after, law_indentation, stored_energy
 from vibroimpact.dynamics.core.next_stretch import end_of, next_stretch
-from vibroimpact.dynamics.core.parts import lose_at_end, write_next, write_part
+from vibroimpact.dynamics.core.parts import (
+    has_room,
+    lose_at_end,
+    write_free,
+    write_law,
+    write_next,
+)
 from vibroimpact.dynamics.core.records import Bases, Law, State, System
 from vibroimpact.dynamics.core.rest import is_captured, is_near_rest
 from vibroimpact.dynamics.core.surface_friction import flown
 from vibroimpact.dynamics.core.touch import time_to_separation
 
-RELEASED, CAPTURED, RIDES, TOO_STIFF, NEAR_REST, FULL = 0, 1, 2, 3, 4, 5
+RELEASED, CAPTURED, RIDES, TOO_STIFF, MAY_REST, FULL = range(6)
 """How a contact goes on: released; too little energy to leave; in contact at the end of the time or
 of the steps; not to be integrated; near equilibrium, which is to be looked at; no room for a
 further part.
@@ -72,8 +86,21 @@ def energy_held(law: Law, manner: Manner, delta: float) -> float:
     return held if abs(held) > _NOTHING * manner.energy else 0.0
 
 
+@compiled(lambda t: t.real(t.of(System), t.of(Law), t.of(State)))
+def indentation_in(system: System, law: Law, state: State) -> float:
+    """Return the indentation of a law in a state [m], at least that of release."""
+    return law_indentation(law, max(approach_of(system, state)[0], law.release_level))
+
+
+@compiled(lambda t: t.real(t.of(Law), t.real))
+def plastic_work(law: Law, delta: float) -> float:
+    """Return the plastic work of a law since its memory last changed [J], at an indentation [m]."""
+    _, plastic = energies_at(law.addresses[1])(delta, law.coefficients)
+    return float(plastic)
+
+
 @compiled(
-    lambda t: t.tuple(t.integer, t.integer, t.of(Progress), t.of(State), t.of(Law))(
+    lambda t: t.tuple(t.integer, t.of(Progress), t.of(State), t.of(Law))(
         t.of(Bases),
         t.of(Bodies),
         t.of(Manner),
@@ -93,9 +120,9 @@ def follow_contact(
     progress: Progress,
     lost: Floats,
     parts: Parts,
-) -> tuple[int, int, Progress, State, Law]:
+) -> tuple[int, Progress, State, Law]:
     """Follow a contact until it is released, or until something is to be decided; return how it
-    goes on, and the number of parts written.
+    goes on.
 
     Parameters
     ----------
@@ -112,7 +139,7 @@ def follow_contact(
     lost : array, shape (n + 1,)
         Energy lost in each coordinate, and last in the contact [J], to which is added.
     parts : Parts
-        Room for the parts of the motion.
+        The parts of the motion, to which is added.
     """
     system = bodies.system
     time = progress.time
@@ -124,37 +151,27 @@ def follow_contact(
     fresh = progress.fresh
     pushes = progress.pushes
     steps = progress.steps
-    memories = progress.memories
+    number = progress.law
+    plastic = progress.plastic
     largest_force = progress.largest_force
     deepest = progress.deepest
     peaks = progress.peaks
     sphere = progress.sphere
     elements = len(lost) - 1
     nodes = parts.force.shape[1]
-    part = 0
-    under_law = 0  # the first part under the law as it is now
-    changes = 0  # of the law's memory, in this call
+    under_law = parts.written[PARTS]  # the first part under the law as it is now
     outcome = FULL
-    parts.late_loss[0] = 0.0
-    # two changes at most are made on the way
-    while part < len(parts.start) and changes + 1 < len(parts.turned_at):
+    while has_room(parts):
         if not pushes:  # recoil
             length, separates = end_of_coasting(system, law, manner, state)
             if not np.isfinite(length):
                 outcome = TOO_STIFF
                 break
             after = state_after(system, state, length)
-            write_part(parts, part, time, state, memories)
-            parts.kind[part] = 0
-            parts.length[part] = length
-            part += 1
+            write_free(parts, RECOIL, time, length, state, number)
             gone = lost_in_flight(system, state, after)
-            held = stored_energy(
-                law, law_indentation(law, max(approach_of(system, state)[0], law.release_level))
-            )
-            left = stored_energy(
-                law, law_indentation(law, max(approach_of(system, after)[0], law.release_level))
-            )
+            held = stored_energy(law, indentation_in(system, law, state))
+            left = stored_energy(law, indentation_in(system, law, after))
             for coordinate in range(len(lost)):
                 lost[coordinate] += gone[coordinate]
             lost[elements] += held - left
@@ -165,7 +182,7 @@ def follow_contact(
                 outcome = RELEASED
                 break
             pushes = True
-            delta = law_indentation(law, max(approach_of(system, state)[0], law.release_level))
+            delta = indentation_in(system, law, state)
             trend = 0.0
             continue
 
@@ -176,29 +193,29 @@ def follow_contact(
             outcome = RIDES
             break
         longest = min(remaining if rides else np.inf, manner.longest)
+        turned = False
         if not fresh:  # events at the end of the last stretch: it is within rounding of them
             approach, rate = approach_of(system, state)
             overlap = max(approach - law.release_level, 0.0)
             if overlap <= _ROUNDING * deepest and rate < 0.0:
-                lose_at_end(parts, part, lost, energy_held(law, manner, law.release))
+                lose_at_end(parts, lost, energy_held(law, manner, law.release))
                 outcome = RELEASED
                 break
             if manner.tension == TENSION_CUT and force <= _NO_FORCE * largest_force and trend < 0.0:
                 if separates_at_no_force(system, law, manner, state):
-                    lose_at_end(parts, part, lost, energy_held(law, manner, delta))
+                    lose_at_end(parts, lost, energy_held(law, manner, delta))
                     outcome = RELEASED
                     break
                 pushes = False
                 continue
-            if closing <= _ZERO_RATE * manner.motion_speed and delta > law.memory_level:
-                parts.turned_at[changes] = delta
-                peaks = peaks_with(
-                    bases, law, peaks, parts, (under_law, part), (largest_force, deepest)
-                )
-                under_law = part
-                changes += 1
-                memories += 1
-                law = law_after(law, delta)
+            turned = closing <= _ZERO_RATE * manner.motion_speed and delta > law.memory_level
+        if turned:
+            between = (under_law, parts.written[PARTS])
+            peaks = peaks_with(bases, law, peaks, parts, between, (largest_force, deepest))
+            under_law = parts.written[PARTS]
+            plastic += plastic_work(law, delta)
+            number = write_law(parts, number, law.speed, delta)
+            law = law_after(law, delta)
         if next_length < _SHORTEST * manner.span:
             outcome = TOO_STIFF
             break
@@ -210,17 +227,9 @@ def follow_contact(
         if not stretch.accepted:
             next_length = 0.5 * min(next_length, stretch.event_time)
             continue
-        write_next(
-            parts,
-            part,
-            bases,
-            system,
-            stretch,
-            Begun(time, state, memories, sphere),
-            lost,
-        )
+        part = parts.written[PARTS]
+        write_next(parts, bases, system, stretch, Begun(time, state, number, sphere), lost)
         end = end_of(bases, stretch)
-        part += 1
         state = end.state
         sphere = end.sphere
         time += end.length
@@ -230,7 +239,7 @@ def follow_contact(
         trend = end.trend
         largest_force = max(largest_force, end.largest_force)
         for node in range(1, parts.indentation.shape[1]):
-            deepest = max(deepest, parts.indentation[part - 1, node])
+            deepest = max(deepest, parts.indentation[part, node])
         event = stretch.event
         fresh = False
         if event.kind == NO_EVENT:
@@ -243,28 +252,27 @@ def follow_contact(
         ):
             # stored energy is lost where a sticking contact breaks, or where the surface recovers
             # more slowly than the bodies part
-            lose_at_end(parts, part, lost, energy_held(law, manner, delta))
+            lose_at_end(parts, lost, energy_held(law, manner, delta))
             outcome = RELEASED
             break
         elif event.kind == NO_PUSH:
             pushes = False
         elif event.kind == TURN:
-            parts.turned_at[changes] = delta
-            peaks = peaks_with(
-                bases, law, peaks, parts, (under_law, part), (largest_force, deepest)
-            )
-            under_law = part
-            changes += 1
-            memories += 1
+            between = (under_law, parts.written[PARTS])
+            peaks = peaks_with(bases, law, peaks, parts, between, (largest_force, deepest))
+            under_law = parts.written[PARTS]
+            plastic += plastic_work(law, delta)
+            number = write_law(parts, number, law.speed, delta)
             law = law_after(law, delta)
         if pushes:
             if is_captured(system, law, manner, state, delta):
                 outcome = CAPTURED
                 break
             if is_near_rest(system, law, state, force):
-                outcome = NEAR_REST
+                outcome = MAY_REST
                 break
-    peaks = peaks_with(bases, law, peaks, parts, (under_law, part), (largest_force, deepest))
+    between = (under_law, parts.written[PARTS])
+    peaks = peaks_with(bases, law, peaks, parts, between, (largest_force, deepest))
     now = Progress(
         time,
         next_length,
@@ -275,10 +283,11 @@ def follow_contact(
         fresh,
         pushes,
         steps,
-        memories,
+        number,
+        plastic,
         largest_force,
         deepest,
         peaks,
         sphere,
     )
-    return outcome, part, now, state, law
+    return outcome, now, state, law

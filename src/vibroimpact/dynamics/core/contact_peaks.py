@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.attempt import basis_of, time_at
-from vibroimpact.dynamics.core.contact_records import Parts, Peaks
+from vibroimpact.dynamics.core.contact_records import RECOIL, Parts, Peaks
 from vibroimpact.dynamics.core.linear import largest_of
 from vibroimpact.dynamics.core.peak import peak_of, peak_of_force
 from vibroimpact.dynamics.core.records import Bases, Law
@@ -31,7 +31,7 @@ def peaks_with(
     between: tuple[int, int],
     at_nodes: tuple[float, float],
 ) -> Peaks:
-    """Return the peaks of a contact with those of some parts under one law.
+    """Return the peaks of an impact with those of some parts of a contact under one law.
 
     They are located only in parts whose nodal values come near the largest.
 
@@ -42,7 +42,7 @@ def peaks_with(
     law : Law
         The law in these parts.
     before : Peaks
-        The peaks without these parts.
+        The peaks of the impact without these parts.
     parts : Parts
         The parts of the contact.
     between : tuple of two ints
@@ -56,7 +56,7 @@ def peaks_with(
     indentation = before.indentation
     time_of_indentation = before.time_of_indentation
     for part in range(between[0], between[1]):
-        if parts.kind[part] == 0:
+        if parts.kind[part] == RECOIL:
             continue
         basis = basis_of(bases, parts.time_map[part])
         if largest_of(parts.force[part]) >= _NEAR * largest_force:

@@ -119,13 +119,13 @@ class NextStretch(NamedTuple):
 
 
 class Begun(NamedTuple):
-    """What a part of the motion begins with: time [s], the state, the changes of the
-    law's memory before, and friction.
+    """What a part of the motion begins with: time [s], the state, the number of its law, of
+    `Parts`, and friction.
     """
 
     time: Real
     state: State
-    memories: Integer
+    law: Integer
     sphere: SlidingSphere
 
 
@@ -149,12 +149,12 @@ class StretchEnd(NamedTuple):
 
 
 class Manner(NamedTuple):
-    """What stays the same through a contact.
+    """What stays the same through a contact; times are since the first touch of the impact [s].
 
     tension, contact_end: numbers of the law's, of `events`. motion_speed: speed of the motion
     [m/s]; energy: that of it [J]. span: approximate duration of a contact [s]. tolerance: relative
-    error allowed at the end of each stretch. begun: time of touch [s]. until: end of a ride [s].
-    longest: length of a stretch [s]. most_steps: how many stretches are tried.
+    error allowed at the end of each stretch. begun: time of touch. until: end of a ride. longest:
+    length of a stretch [s]. most_steps: how many stretches are tried in an impact.
     """
 
     tension: Integer
@@ -170,7 +170,9 @@ class Manner(NamedTuple):
 
 
 class Peaks(NamedTuple):
-    """Largest force [N] and largest indentation [m] of a contact, and their times [s]."""
+    """Largest force [N] and largest indentation [m] of an impact, and their times since its first
+    touch [s].
+    """
 
     force: Real
     time_of_force: Real
@@ -179,14 +181,14 @@ class Peaks(NamedTuple):
 
 
 class Progress(NamedTuple):
-    """How far a contact has come.
+    """How far an impact has come, and a contact in it.
 
-    time [s]. next_length: of the next stretch [s]. At the end of the last stretch: delta,
-    indentation of the law [m], force [N], its rate of change trend [N/s], and closing, the whole
-    rate of the approach [m/s]. fresh: no stretch has been solved yet. pushes: the law acts,
-    otherwise the contact recoils. steps: stretches tried. memories: changes of the law's memory.
-    largest_force [N], deepest [m]: at a node; peaks: also between nodes, at the end of a call.
-    sphere: friction.
+    time: since the first touch [s]. next_length: of the next stretch [s]. At the end of the last
+    stretch: delta, indentation of the law [m], force [N], its rate of change trend [N/s], and
+    closing, the whole rate of the approach [m/s]. fresh: no stretch of the contact has been solved
+    yet. pushes: the law acts, otherwise the contact recoils. steps: stretches tried in the impact.
+    law: its number, of `Parts`. plastic: plastic work of the impact [J]. largest_force [N], deepest
+    [m]: of the contact at a node; peaks: of the impact, also between nodes. sphere: friction.
     """
 
     time: Real
@@ -198,27 +200,43 @@ class Progress(NamedTuple):
     fresh: Boolean
     pushes: Boolean
     steps: Integer
-    memories: Integer
+    law: Integer
+    plastic: Real
     largest_force: Real
     deepest: Real
     peaks: Peaks
     sphere: SlidingSphere
 
 
-class Parts(NamedTuple):
-    """Room for P parts of the motion through a contact: stretches (kind 1) and recoils (kind 0).
+RECOIL, STRETCH, APART, FLIGHT = range(4)
+"""Kinds of parts of a motion: in contact, without a force and with it; apart, between two contacts
+of an impact, and before an impact.
+"""
 
-    kind, time_map (P,). start, length [s] (P,). displacement, velocity (P, n), local (P, k): state
-    at the start. memories (P,): changes of the law's memory before it. Of stretches, as in `Nodes`,
-    `Histories` and `Attempt`: static, force (P, N), approach, rate, closing, delta (P, N + 1),
-    work, dissipated, roughness (P,). separation_loss (P,): stored energy that is lost at the end
-    [J]. indentation (P, N + 1): of the surface by the centre above [m]. turned_at (P,):
-    indentations of the law at the changes of its memory [m]. late_loss (1,): stored energy lost at
-    the end of the last part of the call before [J]. Of stretches with friction in F directions:
-    friction, slip (P, F, N), as in `SlidingPart`, and sphere (P, 2, 13), the numbers of
-    `surface_friction_records` at their starts and ends.
+PARTS, LAWS = range(2)
+"""Places of `Parts.written`."""
+
+OF_IMPACT = -1
+"""Stands for the law with which an impact begins."""
+
+
+class Parts(NamedTuple):
+    """Room for P parts of the motion of a drop, and for the L laws of its contacts.
+
+    written (2,): how many of both are there. kind, time_map (P,). start (P,): since the first touch
+    of the impact, of a flight since the start of the run [s]. length (P,) [s]. displacement,
+    velocity (P, n), local (P, k): state at the start. law (P,): the number of the law. Of
+    stretches, as in `Nodes`, `Histories` and `Attempt`: static, force (P, N), approach, rate,
+    closing, delta (P, N + 1), work, dissipated, roughness (P,). separation_loss (P,): stored energy
+    that is lost at the end [J]. indentation (P, N + 1): of the surface by the centre above [m]. Of
+    stretches with friction in F directions: friction, slip (P, F, N), as in `SlidingPart`, and
+    sphere (P, 2, 13), the numbers of `surface_friction_records` at their starts and ends.
+
+    A law is another one, origin (L,), or `OF_IMPACT`, at a closing speed (L,) [m/s], which
+    remembers the indentation compressed (L,) [m]; this is NaN where it changes no memory.
     """
 
+    written: Integers
     kind: Integers
     time_map: Integers
     start: Vector
@@ -226,7 +244,7 @@ class Parts(NamedTuple):
     displacement: Matrix
     velocity: Matrix
     local: Matrix
-    memories: Integers
+    law: Integers
     static: Matrix
     force: Matrix
     approach: Matrix
@@ -238,8 +256,9 @@ class Parts(NamedTuple):
     roughness: Vector
     separation_loss: Vector
     indentation: Matrix
-    turned_at: Vector
-    late_loss: Vector
     friction: Cube
     slip: Cube
     sphere: Cube
+    origin: Integers
+    closing_speed: Vector
+    compressed: Vector

@@ -30,14 +30,16 @@ from vibroimpact.dynamics.core.records import Boolean, Cube, Matrix, Real, Vecto
     SAG,
     REST_TIME,
     END_TIME,
-) = range(17)
+    INERTIA,
+) = range(18)
 """State of a drop: mass [kg], radius [m], gravity [m/s^2] and rest speed [m/s]; time [s], gap [m]
 and upward velocity [m/s]; approach speed at its touch [m/s]; deepest indentation so far, and where
 it touches next [m]; energy lost in damping and in plastic work, stored in the contact and written
-off at rest [J]; static indentation [m]; when rest and the end of the run are [s].
+off at rest [J]; static indentation [m]; when rest and the end of the run are [s]; mass that is
+accelerated in flight over that of the sphere.
 """
 
-STATES = 17
+STATES = 18
 
 RUBBED, MICROSLIP = range(2)
 """Energies that friction has taken so far, and the part of it that was lost in microslip [J]."""
@@ -96,6 +98,7 @@ ENDINGS = (
     "limit of impacts",
     "failed",
     "beside the plate",
+    "limit of a ride",
 )
 """Reasons for the end of a run, by their numbers."""
 
@@ -109,6 +112,7 @@ ENDINGS = (
     END_AT_LIMIT,
     END_FAILED,
     END_BESIDE,
+    END_RIDING,
 ) = range(len(ENDINGS))
 
 
@@ -127,13 +131,15 @@ class DropManner(NamedTuple):
 
     contacts: how contacts are solved. has_force: has the law a force, so that there are any? lasts:
     does the memory of the law last from impact to impact? waits: does a drop wait at its touch for
-    what the law is at the approach speed? stops: rules that end runs in flight.
+    what the law is at the approach speed? is_told_flights: does it wait before each flight for
+    that? stops: rules that end runs in flight.
     """
 
     contacts: ContactManner
     has_force: Boolean
     lasts: Boolean
     waits: Boolean
+    is_told_flights: Boolean
     stops: StopRules
 
 
@@ -141,7 +147,7 @@ class Drops(NamedTuple):
     """State of B drops, and room for R impacts of each.
 
     phases (B,): of those above, or how the run ended. impacts, flights (B,): how many there were.
-    state (B, 17). rows (B, R, 21 or 40): the table of impacts, with the further columns.
+    state (B, 18). rows (B, R, 21 or 40): the table of impacts, with the further columns.
 
     laws (B, L, K): coefficients of the law of each impact, of which the last one goes on. at_touch
     (B, K): those at the approach speed of a touch, where they depend on it; of a law without a

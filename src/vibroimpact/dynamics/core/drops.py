@@ -37,6 +37,7 @@ from vibroimpact.dynamics.core.drop_records import (
     IMPACT,
     IN_FLIGHT,
     INDENTATION,
+    INERTIA,
     LEFT_STORED,
     LOST,
     MASS,
@@ -97,6 +98,8 @@ def follow_drops(manner: DropManner, drops: Drops, pause: int) -> None:
         phase = ready(manner, drops, drop)
         while phase == IN_FLIGHT or (phase == AT_TOUCH and impacts < pause):
             if phase == IN_FLIGHT:
+                if manner.is_told_flights:
+                    break
                 gap = touch_gap(manner.has_force, addresses, coefficients)
                 phase = fly(manner.stops, next_touch(state, gap), impacts, state)
                 drops.flights[drop] += 1
@@ -169,6 +172,14 @@ def touch_gap(has_force: bool, addresses: Integers, coefficients: Floats) -> flo
     return -float(level)
 
 
+@compiled(lambda t: t.void(t.of(DropManner), t.of(Drops), t.vector))
+def write_touch_gaps(manner: DropManner, drops: Drops, gaps: Floats) -> None:
+    """Write the gaps at which drops touch next [m] (B,)."""
+    for drop in range(len(gaps)):
+        coefficients = drops.coefficients[drop]
+        gaps[drop] = touch_gap(manner.has_force, manner.contacts.addresses, coefficients)
+
+
 @compiled(lambda t: t.integer(t.real, t.vector, t.vector))
 def collide_at_once(separation: float, state: Floats, row: Floats) -> int:
     """Let a drop rebound at its touch with a separation speed [m/s], and return its phase then."""
@@ -232,15 +243,24 @@ def bodies_at_touch(manner: LineManner, law: Law, state: Floats) -> LineManner:
     """Return the bodies of a drop as it touches, with the depth that it would reach undamped."""
     mass = state[MASS]
     gravity = state[GRAVITY]
+    depth, speed = depth_and_speed(law, manner.contact_end, mass, gravity)
+    return with_bodies(manner, mass, gravity, depth, speed)
+
+
+@compiled(lambda t: t.tuple(t.real, t.real)(t.of(Law), t.integer, t.real, t.real))
+def depth_and_speed(law: Law, contact_end: int, mass: float, gravity: float) -> tuple[float, float]:
+    """Return the depth that a rigid body would reach undamped [m], and the scale of its speed in
+    contact [m/s]: at its touch, or due to gravity and adhesion in a soft one.
+    """
     weight = mass * gravity
     square = law.speed * law.speed
     depth = undamped_depth(law.addresses, law.coefficients, law.touch, 0.5 * mass * square, weight)
     scale = square + gravity * (depth - law.touch)
-    if manner.contact_end == _ENDS_AT_PULL_OFF:
+    if contact_end == _ENDS_AT_PULL_OFF:
         sag = static_indentation(law.addresses, law.coefficients, law.release, weight)
         # negative: the energy of adhesion
         scale -= 2.0 * elastic_energy(law, sag) / mass
-    return with_bodies(manner, mass, gravity, depth, math.sqrt(max(scale, 0.0)))
+    return depth, math.sqrt(max(scale, 0.0))
 
 
 @compiled(lambda t: t.real(t.of(Law), t.real))
@@ -404,6 +424,7 @@ def end_by_bounces(state: Floats, row: Floats) -> float:
     missing = 1.0 - row[RESTITUTION]
     limit = math.inf
     if state[GRAVITY] > 0.0 and missing > _LEAST_MISSING:
-        limit = float(state[TIME] + 2.0 * state[VELOCITY] / state[GRAVITY] / missing)
+        first_flight = 2.0 * state[VELOCITY] * state[INERTIA] / state[GRAVITY]
+        limit = float(state[TIME] + first_flight / missing)
     state[END_TIME] = limit if limit < math.inf else state[TIME]
     return limit

@@ -103,25 +103,67 @@ def local_energy(system: System, state: State) -> float:
 
 
 @compiled(lambda t: t.real(t.of(System), t.of(State)))
+def rigid_rate(system: System, state: State) -> float:
+    """Return the rate of the approach by the rigid motions [m/s]."""
+    rate = 0.0
+    for coordinate in range(system.rigid):
+        rate += system.shape[coordinate] * state.velocity[coordinate]
+    return rate
+
+
+@compiled(lambda t: t.real(t.of(System), t.of(State)))
+def driven_rate(system: System, state: State) -> float:
+    """Return the rate of the approach by the driven coordinates [m/s]."""
+    rate = 0.0
+    number = len(state.velocity)
+    for coordinate in range(number - system.driven, number):
+        rate += system.shape[coordinate] * state.velocity[coordinate]
+    return rate
+
+
+@compiled(lambda t: t.real(t.of(System), t.of(State)))
+def separation_speed(system: System, state: State) -> float:
+    """Return the speed at which the centres move apart [m/s], or the sphere from what drives the
+    plate.
+    """
+    return -(rigid_rate(system, state) + driven_rate(system, state))
+
+
+@compiled(lambda t: t.real(t.of(System), t.of(State)))
+def vibration_energy(system: System, state: State) -> float:
+    """Return the kinetic and strain energy of the modes [J], without driven coordinates."""
+    energy = 0.0
+    for coordinate in range(system.rigid, len(state.velocity) - system.driven):
+        speed = state.velocity[coordinate]
+        strain = system.frequency[coordinate] * state.displacement[coordinate]
+        energy += 0.5 * (speed * speed + strain * strain)
+    return energy
+
+
+@compiled(lambda t: t.real(t.of(System), t.of(State)))
+def mechanical_energy(system: System, state: State) -> float:
+    """Return the kinetic, potential and strain energy [J], without what the contact stores."""
+    energy = local_energy(system, state) + vibration_energy(system, state)
+    for coordinate in range(system.rigid):
+        energy += 0.5 * state.velocity[coordinate] * state.velocity[coordinate]
+    for coordinate in range(len(state.velocity)):
+        energy -= system.load[coordinate] * state.displacement[coordinate]
+    return energy
+
+
+@compiled(lambda t: t.real(t.of(System), t.of(State)))
 def energy_of_approach(system: System, state: State) -> float:
     """Return the mechanical energy [J], without what the contact stores, and without that
     of free bodies moving together.
     """
-    energy = local_energy(system, state)
-    along = 0.0
+    energy = mechanical_energy(system, state)
+    if system.rigid == 1:
+        return energy
+    along = rigid_rate(system, state)
     of_rigid = 0.0
-    for coordinate in range(len(state.velocity) - system.driven):
-        speed = state.velocity[coordinate]
-        strain = system.frequency[coordinate] * state.displacement[coordinate]
-        energy += 0.5 * (speed * speed + strain * strain)
-        if coordinate < system.rigid:
-            along += speed * system.shape[coordinate]
-            of_rigid += speed * speed
-    for coordinate in range(len(state.velocity)):
-        energy -= system.load[coordinate] * state.displacement[coordinate]
-    if system.rigid > 1:
-        energy -= 0.5 * (of_rigid - system.mass * along * along)
-    return energy
+    for coordinate in range(system.rigid):
+        of_rigid += state.velocity[coordinate] * state.velocity[coordinate]
+    return energy - 0.5 * (of_rigid - system.mass * along * along)
 
 
 @compiled(lambda t: t.vector(t.of(System), t.of(State), t.of(State)))

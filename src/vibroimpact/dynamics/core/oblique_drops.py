@@ -90,6 +90,8 @@ def follow_oblique_drops(
         phase = ready(manner, drops, drop)
         while phase == IN_FLIGHT or (phase == AT_TOUCH and impacts < pause):
             if phase == IN_FLIGHT:
+                if manner.is_told_flights:
+                    break
                 gap = touch_gap(manner.has_force, addresses, coefficients)
                 flight = over_plate(oblique, drop, next_touch(state, gap))
                 phase = fly(manner.stops, flight, impacts, state)
@@ -117,7 +119,9 @@ def follow_oblique_drops(
             if phase != END_FAILED:
                 rubbed = rubbed_end(oblique, drop, solved, law, bodies, contacts.grid, row)
                 end_along(oblique, drop, rubbed.end, rubbed.microslip, row)
-            if manner.lasts and leaves_dent(oblique, drop, contact.deepest, state):
+            # after a flight that is told, who tells it decides
+            may_leave = manner.lasts and not manner.is_told_flights
+            if may_leave and leaves_dent(oblique, drop, contact.deepest, state):
                 state[DENT] = 0.0
                 remember(addresses, True, fresh, 0.0, next_coefficients)
             coefficients[:] = next_coefficients

@@ -1,11 +1,20 @@
-"""The parts of a motion through a contact, written as they are accepted."""
+"""The parts of the motion of a drop and the laws of its contacts, written as they come."""
 
 from __future__ import annotations
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.attempt import basis_of
-from vibroimpact.dynamics.core.contact_records import Attempt, Balance, Begun, NextStretch, Parts
+from vibroimpact.dynamics.core.contact_records import (
+    LAWS,
+    PARTS,
+    STRETCH,
+    Attempt,
+    Balance,
+    Begun,
+    NextStretch,
+    Parts,
+)
 from vibroimpact.dynamics.core.linear import product, write_layer, write_row
 from vibroimpact.dynamics.core.records import Bases, Basis, State, System
 from vibroimpact.dynamics.core.surface_friction_records import (
@@ -21,39 +30,67 @@ from vibroimpact.dynamics.core.surface_friction_records import (
 )
 
 
+@compiled(lambda t: t.boolean(t.of(Parts)))
+def has_room(parts: Parts) -> bool:
+    """Is there room for a further part, and for two further laws?"""
+    return bool(
+        parts.written[PARTS] < len(parts.start) and parts.written[LAWS] + 1 < len(parts.origin)
+    )
+
+
+@compiled(lambda t: t.integer(t.of(Parts), t.integer, t.real, t.real))
+def write_law(parts: Parts, origin: int, closing_speed: float, compressed: float) -> int:
+    """Write a law, and return its number; the arguments are the columns of `Parts`."""
+    law = parts.written[LAWS]
+    parts.origin[law] = origin
+    parts.closing_speed[law] = closing_speed
+    parts.compressed[law] = compressed
+    parts.written[LAWS] = law + 1
+    return int(law)
+
+
+@compiled(lambda t: t.void(t.of(Parts), t.integer, t.real, t.real, t.of(State), t.integer))
+def write_free(
+    parts: Parts, kind: int, start: float, length: float, state: State, law: int
+) -> None:
+    """Write a part without contact force, of a kind, start and length [s], from a state on.
+
+    `law`: the number of that of a contact that recoils.
+    """
+    part = parts.written[PARTS]
+    write_part(parts, part, start, state, law)
+    parts.kind[part] = kind
+    parts.length[part] = length
+    parts.written[PARTS] = part + 1
+
+
 @compiled(lambda t: t.void(t.of(Parts), t.integer, t.real, t.of(State), t.integer))
-def write_part(parts: Parts, part: int, start: float, state: State, memories: int) -> None:
-    """Write what all parts of a motion have: their start [s], the state then, and the
-    changes of the law's memory before.
+def write_part(parts: Parts, part: int, start: float, state: State, law: int) -> None:
+    """Write what all parts of a motion have: their start [s], the state then, and the number of
+    their law.
     """
     parts.start[part] = start
     write_row(parts.displacement, part, state.displacement)
     write_row(parts.velocity, part, state.velocity)
     write_row(parts.local, part, state.local)
-    parts.memories[part] = memories
+    parts.law[part] = law
     parts.separation_loss[part] = 0.0
 
 
-@compiled(lambda t: t.void(t.of(Parts), t.integer, t.vector, t.real))
-def lose_at_end(parts: Parts, part: int, lost: Floats, energy: float) -> None:
-    """Add stored energy that is lost at the end of the last part [J]; it may be that of
-    an earlier call.
-    """
+@compiled(lambda t: t.void(t.of(Parts), t.vector, t.real))
+def lose_at_end(parts: Parts, lost: Floats, energy: float) -> None:
+    """Add stored energy that is lost at the end of the last part [J]."""
     lost[len(lost) - 1] += energy
-    if part > 0:
-        parts.separation_loss[part - 1] += energy
-    else:
-        parts.late_loss[0] += energy
+    parts.separation_loss[parts.written[PARTS] - 1] += energy
 
 
 @compiled(
     lambda t: t.void(
-        t.of(Parts), t.integer, t.of(Bases), t.of(System), t.of(NextStretch), t.of(Begun), t.vector
+        t.of(Parts), t.of(Bases), t.of(System), t.of(NextStretch), t.of(Begun), t.vector
     )
 )
 def write_next(
     parts: Parts,
-    part: int,
     bases: Bases,
     system: System,
     stretch: NextStretch,
@@ -63,7 +100,8 @@ def write_next(
     """Write a stretch that is accepted, and add what is lost in it [J] to `lost` (n +
     1,): by each coordinate, and last in the contact.
     """
-    write_part(parts, part, begun.time, begun.state, begun.memories)
+    part = parts.written[PARTS]
+    write_part(parts, part, begun.time, begun.state, begun.law)
     write_stretch(
         parts,
         part,
@@ -78,6 +116,7 @@ def write_next(
     for coordinate in range(len(lost)):
         lost[coordinate] += lost_on_path[coordinate]
     lost[len(lost) - 1] += stretch.tried.contact.dissipated[0]
+    parts.written[PARTS] = part + 1
 
 
 @compiled(
@@ -97,7 +136,7 @@ def write_stretch(
     """Write a solved stretch."""
     path = balance.path
     number = len(basis.time)
-    parts.kind[part] = 1
+    parts.kind[part] = STRETCH
     parts.time_map[part] = basis.time_map
     parts.length[part] = solved.length
     write_row(parts.static, part, solved.nodes.static)

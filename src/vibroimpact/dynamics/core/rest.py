@@ -8,7 +8,11 @@ import math
 
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.contact_records import Manner
-from vibroimpact.dynamics.core.flight import approach_of, energy_of_approach
+from vibroimpact.dynamics.core.flight import (
+    approach_of,
+    energy_of_approach,
+    rigid_rate,
+)
 from vibroimpact.dynamics.core.law import static_work, stored_energy
 from vibroimpact.dynamics.core.records import Law, State, System
 
@@ -51,7 +55,4 @@ def is_near_rest(system: System, law: Law, state: State, force: float) -> bool:
     overlap = max(approach_of(system, state)[0] - law.release_level, 0.0)
     on_springs = system.mass * (overlap / weight / _REST_MARGIN + system.compliance)
     slowest = 1.0 / math.sqrt(on_springs + system.flexibility)
-    speed = 0.0
-    for coordinate in range(system.rigid):
-        speed += system.shape[coordinate] * state.velocity[coordinate]
-    return system.mass * abs(speed) * slowest < most
+    return system.mass * abs(rigid_rate(system, state)) * slowest < most

@@ -63,10 +63,9 @@ def _of_bounce(bounce: Bounce, lost: float, time: Floats, lies_from: float) -> M
     state = State(state.position, state.velocity, start.spin + np.zeros(len(time)))
     # an impulse has no duration: a sphere may lie from the time of touch on
     after = (time > touch) | lies
-    if bounce.oblique_contacts and after.any():
-        ((_, contact),) = bounce.oblique_contacts
-        in_contact, force, lost_here = contact.at(time[after] - touch)
-        parting = float(contact.duration[0])
+    if bounce.along is not None and after.any():
+        in_contact, force, lost_here = bounce.along.at(time[after] - touch)
+        parting = float(bounce.along.duration[0])
         later = sphere.fly(in_contact, np.maximum(time[after] - touch - parting, 0.0))
         for whole, part in zip(
             (state.position, state.velocity, state.spin),

@@ -1,248 +1,181 @@
-"""The motion along the plate and the spin of the drops of a run, through flights and contacts."""
+"""The motion along the plate and the spin of one drop, where the core does not follow it."""
 
 from __future__ import annotations
 
-from contextlib import nullcontext
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
-from vibroimpact.arrays import Bools, Drops, Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.compiled import interpreted, law_addresses
 from vibroimpact.contact.friction.law import ImpulsiveFriction
 from vibroimpact.contact.friction.laws.coulomb import Coulomb
 from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.dynamics.core.sphere_contact import strike
 from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.impact_conditions import ImpactConditions
 from vibroimpact.dynamics.law_coefficients import coefficients_of
 from vibroimpact.dynamics.oblique.lying import lie
-from vibroimpact.dynamics.oblique.rubbed_contact import RubbedContact
-from vibroimpact.dynamics.oblique.state import (
-    ImpulseAlong,
-    ObliqueContacts,
-    Sphere,
-    State,
-    energy_taken,
-)
-from vibroimpact.dynamics.oblique.statement import Oblique
-from vibroimpact.dynamics.shaken.statement import PlateMotion
-
-_FEW = 200
-"""Fewer impulses than these do not load the compiler."""
+from vibroimpact.dynamics.oblique.state import State, energy_taken, spheres_of
+from vibroimpact.dynamics.problem import Problem
 
 
 class ObliqueMotion:
-    """Places, velocities along the plate and spins of the B drops of a run.
+    """Place, velocity along the plate and spin of one drop.
+
+    `state`: now. `lost`, `microslip`: energy that friction took so far, and the part of it that was
+    lost while a part of the contact stuck [J].
 
     Parameters
     ----------
-    oblique : Oblique
-        What the drops have at the start.
-    mass, radius, inertia : array, shape (B,)
-        Of the spheres [kg], [m], [kg m^2].
-    motion : PlateMotion or None
-        Of the plate.
-    tolerance : float
-        Relative error allowed.
+    problem : Problem
+        Of one drop that moves along the plate.
     """
 
-    def __init__(
-        self,
-        oblique: Oblique,
-        mass: Floats,
-        radius: Floats,
-        inertia: Floats,
-        motion: PlateMotion | None,
-        tolerance: float,
-    ) -> None:
-        def spread(values: Any) -> Floats:
-            return np.array(
-                [np.broadcast_to(np.asarray(value, dtype=float), mass.shape) for value in values]
+    def __init__(self, problem: Problem) -> None:
+        oblique = problem.oblique
+        assert oblique is not None
+        self.sphere = spheres_of(problem)
+        self.state = State(
+            *(
+                np.array(values, dtype=float)[:, None]
+                for values in (oblique.position, oblique.velocity, oblique.spin)
             )
-
-        self.sphere = Sphere(mass, radius, inertia, spread(oblique.gravity))
-        self.state = State(spread(oblique.position), spread(oblique.velocity), spread(oblique.spin))
-        self.start, self.half = (
-            self.state.position,
-            None if oblique.size is None else 0.5 * np.array(oblique.size)[:, None],
         )
-        self.law, self.lost, self.microslip = (
-            oblique.friction,
-            np.zeros(len(mass)),
-            np.zeros(len(mass)),
+        self.law = oblique.friction
+        self.lost = 0.0
+        self.microslip = 0.0
+        self._start = self.state.position
+        self._motion = problem.motion
+        self._half = np.full((2, 1), np.inf)
+        if oblique.size is not None:
+            self._half = 0.5 * np.array(oblique.size, dtype=float)[:, None]
+
+    def fly(self, flight: Flight, time: Floats) -> None:
+        """Advance the drop through its flight up to a time [s] (1,)."""
+        self.state = flight.carry(self.sphere, self.state, time)
+
+    def lie(self, pressing: Floats, elapsed: Floats) -> Floats:
+        """Let the drop lie on the plate for a time [s] (1,), at most until it leaves it.
+
+        Return that time. `pressing`: gravity along the normal [m/s^2] (1,).
+        """
+        before = self.state
+        half_x, half_y = self._half[:, 0].tolist()
+        after, _, times = lie(
+            self.sphere, before, self.law, pressing, elapsed[:, None], (half_x, half_y)
         )
-        self.motion = motion
-        self.tolerance = tolerance
-
-    def fly(self, drops: Drops, flight: Flight, time: Floats) -> None:
-        """Advance drops through their flights up to a time [s]."""
-        self._put(drops, self._flown(drops, flight, time))
-
-    def _flown(self, drops: Drops, flight: Flight, time: Floats) -> State:
-        return flight.carry(self.sphere.take(drops), self.state.take(drops), time)
-
-    def pulled(self, drops: Drops) -> tuple[Floats, Floats]:
-        """Return the velocities of drops along the plate [m/s], and the accelerations of
-        gravity along it [m/s^2], (2, B).
-        """
-        return self.state.velocity[:, drops], self.sphere.gravity[:, drops]
-
-    def now(self, drops: Drops) -> tuple[Sphere, State]:
-        """Return spheres and state of drops."""
-        return self.sphere.take(drops), self.state.take(drops)
-
-    def lie(self, drops: Drops, pressing: Floats, elapsed: Floats) -> Floats:
-        """Let drops lie on the plate for a time [s], at most until they leave it, and return that
-        time.
-
-        `pressing`: gravity along the normal [m/s^2].
-        """
-        sphere, before = self.sphere.take(drops), self.state.take(drops)
-        law = None if self.law is None else self.law.take(drops)
-        half = (np.inf, np.inf) if self.half is None else tuple(self.half[:, 0].tolist())
-        after, _, times = lie(sphere, before, law, pressing, elapsed[:, None], half)
-        self.lost[drops] += energy_taken(sphere, before, after)
-        self._put(drops, after)
+        self.lost += float(energy_taken(self.sphere, before, after)[0])
+        self.state = after
         return times[:, 0]
 
-    def distance(self, drops: Drops, flight: Flight, time: Floats) -> Floats:
-        """Return how far drops move along the plate in their flights up to a time [m]."""
+    def distance(self, flight: Flight, time: Floats) -> float:
+        """Return how far the drop moves along the plate in its flight up to a time [m]."""
         with np.errstate(invalid="ignore"):
-            moved = self._over_plate(drops, flight, time) - self._over_plate(
-                drops, flight, flight.start
-            )
-        return np.asarray(np.nan_to_num(np.hypot(*moved)))
+            moved = self._over_plate(flight, time) - self._over_plate(flight, flight.start)
+        return float(np.nan_to_num(np.hypot(*moved))[0])
 
-    def _over_plate(self, drops: Drops, flight: Flight, time: Floats) -> Floats:
-        """Return the places of drops at times of their flights [s], seen from the plate
-        [m] (2, b).
-        """
-        return self._from_plate(self._flown(drops, flight, time).position, time)
+    def _over_plate(self, flight: Flight, time: Floats) -> Floats:
+        """Return the place at a time of its flight [s], seen from the plate [m] (2, 1)."""
+        return self._from_plate(flight.carry(self.sphere, self.state, time).position, time)
 
     def _from_plate(self, place: Floats, time: Floats) -> Floats:
-        """Return places at some times [s], seen from the plate, whose supports may move
-        along it [m] (2, b).
-        """
-        return (
-            place
-            if self.motion is None
-            else place - np.outer(self.motion.direction[:2], self.motion.at(time)[0])
-        )
+        """Return a place at a time [s], seen from the plate, whose supports may move along it."""
+        if self._motion is None:
+            return place
+        return place - np.outer(self._motion.direction[:2], self._motion.at(time)[0])
 
-    def seen_from_plate(self, drops: Drops, time: Floats) -> Floats:
-        """Return the places of drops now, at some times [s], seen from the plate [m] (2, b)."""
-        return self._from_plate(self.state.position[:, drops], time)
+    def seen_from_plate(self, time: Floats) -> dict[str, float]:
+        """Return the columns of the place now, at a time [s] (1,), seen from the plate."""
+        x, y = self._from_plate(self.state.position, time)[:, 0].tolist()
+        return {"place_on_plate_x_m": x, "place_on_plate_y_m": y}
 
-    def place_on_plate(self, drops: Drops, flight: Flight, time: Floats) -> Floats:
-        """Return the places of drops at times of their flights [s], or the nearest ones
-        on the plate [m] (2, b).
-        """
+    def place_on_plate(self, flight: Flight, time: Floats) -> tuple[float, float]:
+        """Return the place at a time of its flight [s], or the nearest one on the plate [m]."""
         with np.errstate(invalid="ignore"):
-            place = np.nan_to_num(self._over_plate(drops, flight, time))
-        return place if self.half is None else np.clip(place, -self.half, self.half)
+            place = np.nan_to_num(self._over_plate(flight, time))
+        x, y = np.clip(place, -self._half, self._half)[:, 0].tolist()
+        return x, y
 
-    def beside(self, drops: Drops, flight: Flight, time: Floats) -> Bools:
-        """Return which drops will be beside the plate at a time of their flights [s]."""
-        if self.half is None:
-            return np.zeros(len(drops), dtype=bool)
-        with np.errstate(invalid="ignore"):
-            place = self._over_plate(drops, flight, time)
-        return np.asarray(np.isfinite(time) & (np.abs(place) > self.half).any(axis=0))
+    def is_beside(self, flight: Flight, time: float) -> bool:
+        """Whether the drop will be beside the plate at a time of its flight [s]."""
+        if not np.isfinite(time):
+            return False
+        place = self._over_plate(flight, np.array([time]))
+        return bool((np.abs(place) > self._half).any())
 
-    def collide(
-        self,
-        drops: Drops,
-        conditions: ImpactConditions,
-        duration: Floats,
-        row: dict[str, Floats],
-    ) -> ObliqueContacts:
-        """Advance drops through contacts of rigid bodies, write their columns, and return the
-        motion in them.
+    def strike(
+        self, time: Floats, impulse: Floats, separation: float
+    ) -> tuple[dict[str, float], float]:
+        """Let a normal impulse without duration act at a time [N s] (1,), [s] (1,).
 
-        `conditions`: the impacts of these drops. `duration`: of their contacts [s].
+        Return the columns of the impact, and the work of the plate [J]: that of friction on the
+        sphere, as the plate moves along itself. `separation`: normal speed after it [m/s].
         """
-        sphere, before = self.now(drops)
-        law = self.law if self.law is None or len(drops) == len(self.lost) else self.law.take(drops)
-        contact = RubbedContact(conditions, self.tolerance, law, sphere, before, duration)
-        end, microslip = contact.ends()
-        self.finish(drops, end, energy_taken(sphere, before, end), microslip, row)
-        return ((np.arange(len(drops)), contact),)
-
-    def collide_at_once(
-        self, drops: Drops, time: Floats, impulse: Floats, row: dict[str, Floats]
-    ) -> tuple[ObliqueContacts, Floats]:
-        """Let a normal impulse without duration act on drops at some times [N s], [s], and write
-        its columns.
-
-        Return the contacts, and the plate's work [J]: that of friction on the spheres, as the plate
-        moves along itself.
-        """
-        sphere, start = self.now(drops)
-        surface = (
-            0.0
-            if self.motion is None
-            else np.outer(self.motion.direction[:2], self.motion.at(time)[1])
-        )
+        start = self.state
+        surface = np.zeros((2, 1))
+        if self._motion is not None:
+            surface = np.outer(self._motion.direction[:2], self._motion.at(time)[1])
         before = replace(start, velocity=start.velocity - surface)  # seen from the plate
-        law = Coulomb(coefficient=0.0) if self.law is None else self.law.take(drops)
+        law = Coulomb(coefficient=0.0) if self.law is None else self.law
         assert isinstance(law, ImpulsiveFriction)  # others follow a force
         rows = before.rows
         ends = np.empty_like(rows)
-        with (
-            interpreted() if len(drops) < _FEW else nullcontext(),
-            coefficients_of(law, len(drops)) as coefficients,
-        ):
-            strike(law_addresses(type(law)), coefficients, sphere.rows(law), rows, impulse, ends)
+        # loading the compiler would take longer
+        with interpreted(), coefficients_of(law, 1) as coefficients:
+            addresses = law_addresses(type(law))
+            strike(addresses, coefficients, self.sphere.rows(law), rows, impulse, ends)
         after = State.of_rows(ends)
-        lost, after = (
-            energy_taken(sphere, before, after),
-            replace(after, velocity=after.velocity + surface),
-        )
-        self.finish(drops, after, lost, np.zeros(len(drops)), row)
-        return ((np.arange(len(drops)), ImpulseAlong(after, lost)),), lost - energy_taken(
-            sphere, start, after
-        )
+        lost = energy_taken(self.sphere, before, after)
+        after = replace(after, velocity=after.velocity + surface)
+        columns = self.finish(after, float(lost[0]), 0.0, separation)
+        return columns, float((lost - energy_taken(self.sphere, start, after))[0])
 
     def finish(
-        self, drops: Drops, after: State, lost: Floats, microslip: Floats, row: dict[str, Floats]
-    ) -> None:
-        """Put drops into their states after a contact in which friction took an energy [J], and
-        write its columns.
+        self, after: State, lost: float, microslip: float, separation: float
+    ) -> dict[str, float]:
+        """Put the drop into its state after a contact, and return the columns of that.
 
-        `microslip`: the part of it that was lost while a part of the contact stuck [J].
+        Parameters
+        ----------
+        after : State
+            Its state then.
+        lost, microslip : float
+            Energy that friction took, and the part of it that was lost while a part of the contact
+            stuck [J].
+        separation : float
+            Normal speed at release [m/s].
         """
-        before = self.state.take(drops)
-        self.lost[drops] += lost
-        self.microslip[drops] += microslip
-        values = [*before.position, *before.velocity, *after.velocity, *before.spin, *after.spin]
-        speed = np.hypot(*before.velocity)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            onward = np.where(
-                speed > 0.0,
-                (before.velocity * after.velocity).sum(axis=0) / speed,
-                np.hypot(*after.velocity),
-            )
-            ratio = np.where(speed > 0.0, onward / speed, np.nan)
-        angle = np.degrees(np.arctan2(onward, row["separation_speed_m_s"][drops]))
-        for name, value in zip(
-            OBLIQUE_IMPACT_COLUMNS,
-            [*values, ratio, angle, lost, microslip, lost - microslip],
-            strict=True,
-        ):
-            row[name][drops] = value
-        self._put(drops, after)
+        before = self.state
+        self.state = after
+        self.lost += lost
+        self.microslip += microslip
+        speed = float(np.hypot(*before.velocity)[0])
+        onward = float(np.hypot(*after.velocity)[0])
+        ratio = np.nan
+        if speed > 0.0:
+            onward = float((before.velocity * after.velocity).sum()) / speed
+            ratio = onward / speed
+        vectors = (before.position, before.velocity, after.velocity, before.spin, after.spin)
+        values = [float(value) for vector in vectors for value in vector[:, 0]]
+        angle = float(np.degrees(np.arctan2(onward, separation)))
+        further = [ratio, angle, lost, microslip, lost - microslip]
+        return dict(zip(OBLIQUE_IMPACT_COLUMNS, [*values, *further], strict=True))
 
-    def _put(self, drops: Drops, state: State) -> None:
-        now = State(self.state.position.copy(), self.state.velocity.copy(), self.state.spin.copy())
-        for name, values in vars(now).items():
-            values[:, drops] = getattr(state, name)
-        self.state = now
+    def energies(self) -> dict[str, float]:
+        """Return the entries of the motion along the plate in the energy ledger [J].
 
-    def energies(self) -> tuple[Floats, Floats, Floats]:
-        """Return the kinetic energies along the plate and of rotation, and the potential
-        energy along the plate, zero at the start [J].
+        The potential energy is zero at the start.
         """
-        fallen = (self.sphere.gravity * (self.state.position - self.start)).sum(axis=0)
-        return *self.sphere.kinetic(self.state), -self.sphere.mass * fallen
+        kinetic, rotation = self.sphere.kinetic(self.state)
+        fallen = (self.sphere.gravity * (self.state.position - self._start)).sum()
+        return {
+            "kinetic_J": float(kinetic[0]),
+            "potential_J": -float(self.sphere.mass[0] * fallen),
+            "rotation_J": float(rotation[0]),
+            "friction_J": self.lost,
+        }
+
+
+def motion_along(problem: Problem) -> ObliqueMotion | None:
+    """Return the motion along the plate of a single drop, if there is any."""
+    return None if problem.oblique is None else ObliqueMotion(problem)

@@ -116,18 +116,6 @@ class RubbedContact:
     before: State
     duration: Floats
 
-    def of(self, drop: int) -> RubbedContact:
-        """Return the motion of one drop."""
-        here = np.array([drop])
-        return RubbedContact(
-            self.conditions.take(here),
-            self.tolerance,
-            None if self.law is None else self.law.take(here),
-            self.sphere.take(here),
-            self.before.take(here),
-            self.duration[here],
-        )
-
     def ends(self) -> tuple[State, Floats]:
         """Return the states at the end, and the energies lost in microslip [J] (B,)."""
         # a drop that does not rub does not load it

@@ -12,6 +12,7 @@ import numpy as np
 from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.dynamics.core.sphere_records import RubbedSphere
+from vibroimpact.dynamics.problem import Problem
 
 
 @dataclass(frozen=True)
@@ -171,11 +172,6 @@ class ImpulseAlong:
         """Durations of the contacts [s]: none."""
         return np.zeros_like(self.lost)
 
-    def of(self, drop: int) -> ImpulseAlong:
-        """Return the contact of one drop."""
-        here = np.array([drop])
-        return ImpulseAlong(self.after.take(here), self.lost[here])
-
     def at(self, time: Floats) -> tuple[State, Floats, Floats]:
         """Return the state of one drop after the impulse, no friction (2, T), and the
         energy taken [J] (T,), for times from then on.
@@ -185,14 +181,11 @@ class ImpulseAlong:
 
 
 class ContactAlong(Protocol):
-    """The motion along the plate during contacts of some drops."""
+    """The motion along the plate during a contact of one drop."""
 
     @property
     def duration(self) -> Floats:
-        """Durations of the contacts [s]."""
-
-    def of(self, drop: int) -> ContactAlong:
-        """Return the motion of one drop."""
+        """Duration of the contact [s] (1,)."""
 
     def at(self, time: Floats) -> tuple[State, Floats, Floats]:
         """Return states of one drop, friction on it [N] (2, T) and energy taken [J] (T,),
@@ -200,7 +193,15 @@ class ContactAlong(Protocol):
         """
 
 
-ObliqueContacts = tuple[tuple[Drops, ContactAlong], ...]
-"""The motion along the plate during contacts of groups of drops, with their places among
-all drops of the contact.
-"""
+def spheres_of(problem: Problem) -> Sphere:
+    """Return the spheres of a problem whose drops move along the plate."""
+    oblique = problem.oblique
+    assert oblique is not None
+    ones = np.ones(problem.shape or 1)
+    gravity = oblique.with_weight(problem.net_weight).gravity
+    return Sphere(
+        problem.sphere.mass * ones,
+        problem.sphere.contact_offset * ones,
+        problem.sphere_inertia * ones,
+        np.array([value * ones for value in gravity]),
+    )

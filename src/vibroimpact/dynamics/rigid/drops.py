@@ -1,21 +1,22 @@
-"""Drops of rigid bodies on a plate that does not move, which the core follows from start to end."""
+"""Drops of rigid bodies on a plate whose surface does not move, from a problem to a response."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from contextlib import ExitStack
+from typing import NamedTuple
 
 import numpy as np
 
 from vibroimpact.arrays import Drops as Indices
 from vibroimpact.arrays import Floats
+from vibroimpact.bodies.ball import mean_density
 from vibroimpact.compiled import interpreted
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS, OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.dynamics.core import drop_records as records
-from vibroimpact.dynamics.core import stop_rules
-from vibroimpact.dynamics.core.drop_records import DropManner, Drops, ObliqueDrops, StopRules
+from vibroimpact.dynamics.core.drop_records import DropManner, Drops, ObliqueDrops
 from vibroimpact.dynamics.core.drops import follow_drops
 from vibroimpact.dynamics.core.line_records import ContactManner
 from vibroimpact.dynamics.core.oblique_drops import follow_oblique_drops
@@ -28,14 +29,16 @@ from vibroimpact.dynamics.oblique.rubbed_contact import (
     friction_steps,
     rubbing_of,
 )
-from vibroimpact.dynamics.oblique.state import State, energy_taken, friction_parts
+from vibroimpact.dynamics.oblique.state import State, energy_taken, friction_parts, spheres_of
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
 from vibroimpact.dynamics.progress import fraction_done
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.rest import Rest
+from vibroimpact.dynamics.rigid.fluid_drops import FluidDrops
 from vibroimpact.dynamics.rigid.line_contact import NO_CONTACTS, contact_manner
-from vibroimpact.dynamics.rigid.recorded_drops import RecordedDrops, Start, spheres_of
+from vibroimpact.dynamics.rigid.recorded_drops import RecordedDrops, Start
+from vibroimpact.dynamics.run_rules import IS_AT_REST, OUTCOME_CODES, laws_of, stop_rules_of
 
 _FIRST_ROOM = 8  # impacts of a drop; the room doubles
 _FEW = 200
@@ -44,21 +47,16 @@ _FEW = 200
 
 _UNTIL_REST = 50  # about so many impacts of a drop
 
-_OUTCOMES = np.array([Outcome(ending).code for ending in records.ENDINGS])
-"""Codes of outcomes by the numbers of endings."""
-
-_AT_REST = np.array([Outcome(ending).at_rest for ending in records.ENDINGS])
-
 
 def follow(
-    problem: Problem, progress: Callable[[float], None] | None, keeps_bounces: bool
+    problem: Problem, progress: Callable[[float], None] | None, *, keeps_bounces: bool
 ) -> Response:
     """Return the response of the drops of a problem, with arrays of a batch.
 
     Parameters
     ----------
     problem : Problem
-        Of rigid bodies, which meet in a vacuum on a plate that does not move.
+        Of rigid bodies, on a plate whose surface does not move.
     progress : callable, optional
         Called after each impact with the fraction done, in [0, 1].
     keeps_bounces : bool
@@ -71,14 +69,18 @@ def follow(
         oblique = _along_at_start(problem, held)
         manner = _manner_of(problem)
         start = _start_of(drops, oblique)
+        in_fluid = None if problem.fluid is None else FluidDrops(problem, drops, oblique)
         energy_in = _energy_of(problem, drops, start)
         while True:
             room = drops.rows.shape[1]
             pause = room if progress is None else min(int(drops.impacts.max()) + 1, room)
+            impacts_before = drops.impacts.copy()
             if oblique is None:
                 follow_drops(manner, drops, pause)
             else:
                 follow_oblique_drops(manner, drops, oblique, pause)
+            if in_fluid is not None:
+                in_fluid.leave(drops, np.flatnonzero(drops.impacts > impacts_before))
             if progress is not None:
                 progress(_fraction_done(problem, drops))
             moving = drops.phases < 0
@@ -86,14 +88,30 @@ def follow(
                 break
             if drops.impacts[moving].max() == room:
                 drops = _with_more_room(drops)
+            if in_fluid is not None:
+                in_fluid.fly(drops, manner)
             if manner.waits:
                 _take_laws_at_touch(problem, drops, held)
-    return _response_of(problem, drops, oblique, energy_in, start if keeps_bounces else None)
+    ended = _Ended(problem, drops, oblique, in_fluid, energy_in, start)
+    return _response_of(ended, keeps_bounces=keeps_bounces)
+
+
+class _Ended(NamedTuple):
+    """Drops whose runs have ended: what they have of a motion along the plate and in a fluid, where
+    there are any, their energy at the start [J], and their start.
+    """
+
+    problem: Problem
+    drops: Drops
+    oblique: ObliqueDrops | None
+    in_fluid: FluidDrops | None
+    energy_in: Floats
+    start: Start
 
 
 def _is_quick(problem: Problem) -> bool:
     """Are the drops of a problem computed sooner than the compiler is loaded?"""
-    if not isinstance(problem.laws[0], InstantaneousLaw):
+    if not isinstance(problem.laws[0], InstantaneousLaw) or problem.fluid is not None:
         return False
     size = math.prod(problem.shape)
     return size == 1 or size * (problem.impacts or _UNTIL_REST) < _FEW
@@ -105,7 +123,8 @@ def _at_start(problem: Problem, held: ExitStack) -> Drops:
     state = np.zeros((size, records.STATES))
     state[:, records.MASS] = problem.sphere.mass
     state[:, records.RADIUS] = problem.sphere.contact_offset
-    state[:, records.GRAVITY] = problem.gravity
+    state[:, records.GRAVITY] = problem.net_gravity
+    state[:, records.INERTIA] = problem.flight_inertia
     state[:, records.REST_SPEED] = np.nan if problem.rest_speed is None else problem.rest_speed
     state[:, records.REST_TIME] = np.nan
     state[:, records.END_TIME] = np.nan
@@ -117,7 +136,7 @@ def _at_start(problem: Problem, held: ExitStack) -> Drops:
     laws = np.zeros((size, 1, 1))
     if isinstance(problem.laws[0], CompliantLaw):
         laws = np.stack(
-            [held.enter_context(coefficients_of(law, size)) for law in _laws(problem)], axis=1
+            [held.enter_context(coefficients_of(law, size)) for law in laws_of(problem)], axis=1
         )
     room = min(problem.impacts or MOST_IMPACTS, _FIRST_ROOM)
     columns = records.COLUMNS if problem.oblique is None else records.OBLIQUE_COLUMNS
@@ -156,17 +175,6 @@ def _along_at_start(problem: Problem, held: ExitStack) -> ObliqueDrops | None:
     )
 
 
-def _laws(problem: Problem) -> list[ContactLaw]:
-    """Return the laws of the impacts of a problem, of which the last one goes on.
-
-    Where the memory lasts, that of the first law at the start is that of all.
-    """
-    if not problem.memory_lasts:
-        return list(problem.laws)
-    memories = problem.laws[0].memories()
-    return [law.changed(memories) for law in problem.laws]
-
-
 def _manner_of(problem: Problem) -> DropManner:
     """Return what stays the same for all drops of a problem."""
     has_force = isinstance(problem.laws[0], CompliantLaw)
@@ -174,8 +182,9 @@ def _manner_of(problem: Problem) -> DropManner:
         contacts=_contact_manner(problem),
         has_force=has_force,
         lasts=problem.memory_lasts,
-        waits=bool(problem.by_speed) or not has_force,
-        stops=_stop_rules(problem),
+        waits=bool(problem.by_speed) or problem.liquid is not None or not has_force,
+        is_told_flights=problem.fluid is not None,
+        stops=stop_rules_of(problem),
     )
 
 
@@ -198,21 +207,6 @@ def _contact_manner(problem: Problem) -> ContactManner:
     return contact_manner(law, problem.tolerance, steps)
 
 
-def _stop_rules(problem: Problem) -> StopRules:
-    """Return the rules that can end a run; of two that end it at one time the first counts."""
-    rules: list[tuple[int, float, int]] = []
-    if problem.duration is not None:
-        rules.append((stop_rules.AT_TIME, problem.duration, records.END_BY_DURATION))
-    if problem.impacts is not None:
-        rules.append((stop_rules.AFTER_IMPACTS, problem.impacts, records.END_BY_IMPACTS))
-    else:
-        rules.append((stop_rules.AFTER_IMPACTS, MOST_IMPACTS, records.END_AT_LIMIT))
-    if problem.oblique is not None:
-        rules.append((stop_rules.BESIDE_PLATE, 0.0, records.END_BESIDE))
-    kinds, values, endings = zip(*rules, strict=True)
-    return StopRules(np.array(kinds), np.array(values, dtype=float), np.array(endings))
-
-
 def _take_laws_at_touch(problem: Problem, drops: Drops, held: ExitStack) -> None:
     """Give drops that wait at their touch what the law is at their approach speed.
 
@@ -229,15 +223,28 @@ def _take_laws_at_touch(problem: Problem, drops: Drops, held: ExitStack) -> None
         drops.at_touch[touching, 0] = separation
     else:
         drops.at_touch[touching] = held.enter_context(coefficients_of(law, len(touching)))
-    if problem.by_speed:
+    if _is_asked_at_touch(problem):
         drops.rows[touching, number, records.ASKED] = law.nominal_restitution
 
 
 def _law_at(problem: Problem, number: int, drops: Indices, speed: Floats) -> ContactLaw:
-    """Return the law of an impact, counted from 0, of some drops at their approach speeds [m/s]."""
-    laws = _laws(problem)
-    law = laws[min(number, len(laws) - 1)]
-    return problem.law_at(law.take(drops), speed)
+    """Return the law of an impact, counted from 0, of some drops at their approach speeds [m/s].
+
+    Its restitution is what a liquid leaves of it.
+    """
+    laws = laws_of(problem)
+    law = problem.law_at(laws[min(number, len(laws) - 1)].take(drops), speed)
+    if problem.liquid is None:
+        return law
+    none = np.zeros(math.prod(problem.shape))
+    radius = (problem.sphere.contact_offset + none)[drops]
+    mass = (problem.sphere.mass + none)[drops]
+    return problem.liquid.take(drops).around(law, speed, radius, mean_density(mass, radius))
+
+
+def _is_asked_at_touch(problem: Problem) -> bool:
+    """Is the restitution asked of an impact known only at the speed of its touch?"""
+    return bool(problem.by_speed) or problem.liquid is not None
 
 
 def _with_more_room(drops: Drops) -> Drops:
@@ -283,31 +290,25 @@ def _energy_of(problem: Problem, drops: Drops, start: Start) -> Floats:
     return np.asarray(energy + kinetic + rotation)
 
 
-def _response_of(
-    problem: Problem,
-    drops: Drops,
-    oblique: ObliqueDrops | None,
-    energy_in: Floats,
-    start: Start | None,
-) -> Response:
-    """Return the response of drops that have ended.
-
-    `start`: the drops at their start, where bounces are kept.
-    """
+def _response_of(ended: _Ended, *, keeps_bounces: bool) -> Response:
+    """Return the response of drops that have ended."""
+    problem = ended.problem
+    drops = ended.drops
+    oblique = ended.oblique
     state = drops.state.T.copy()  # which all that is told of the drops holds
     end_time = state[records.END_TIME]
-    at_rest = _AT_REST[drops.phases]
+    at_rest = IS_AT_REST[drops.phases]
     if problem.duration is not None:
         end_time[at_rest] = np.maximum(end_time, problem.duration)[at_rest]
     along: dict[str, Floats] = {}
     if oblique is not None:
         _lie(problem, drops, oblique, end_time)
         along = _entries_along(problem, oblique)
-    energy, added = _ledger(state, energy_in, at_rest, along)
+    energy, added = _ledger(ended, state, at_rest, along)
     holds = ledger_holds(energy, added)
     if oblique is not None:
         energy |= friction_parts(*oblique.taken.T)
-    codes = np.where(holds, _OUTCOMES[drops.phases], Outcome.FAILED.code)
+    codes = np.where(holds, OUTCOME_CODES[drops.phases], Outcome.FAILED.code)
     size = len(codes)
     rest = Rest(
         speed=state[records.REST_SPEED],
@@ -320,16 +321,18 @@ def _response_of(
     )
     outcomes = tuple([OUTCOMES[code] for code in codes.tolist()])
     bounces = None
-    if start is not None:
-        bounces = RecordedDrops(problem, start, drops.impacts, drops.flights, drops.rows, end_time)
-    return Response(problem, _table(problem, drops), energy, outcomes, end_time, rest, bounces)
+    if keeps_bounces:
+        bounces = RecordedDrops(
+            problem, ended.start, drops.impacts, drops.flights, drops.rows, end_time
+        )
+    return Response(problem, _table(ended), energy, outcomes, end_time, rest, bounces)
 
 
 def _lie(problem: Problem, drops: Drops, oblique: ObliqueDrops, end_time: Floats) -> None:
     """Let drops at rest lie on the plate until their runs end [s], or they leave it over an edge,
     with which their runs end.
     """
-    resting = np.flatnonzero(_AT_REST[drops.phases])
+    resting = np.flatnonzero(IS_AT_REST[drops.phases])
     if not resting.size:
         return
     assert problem.oblique is not None
@@ -364,29 +367,47 @@ def _entries_along(problem: Problem, oblique: ObliqueDrops) -> dict[str, Floats]
     }
 
 
-def _table(problem: Problem, drops: Drops) -> dict[str, Floats]:
+def _table(ended: _Ended) -> dict[str, Floats]:
     """Return the columns of the impact table, (B, impacts)."""
+    problem = ended.problem
+    drops = ended.drops
     most = int(drops.impacts.max())
     table = drops.rows[:, :most, : len(IMPACT_COLUMNS)].transpose(2, 0, 1).copy()
-    if not problem.by_speed:
-        happened = np.isfinite(table[records.IMPACT])
+    happened = np.isfinite(table[records.IMPACT])
+    if not _is_asked_at_touch(problem):
         for number, law in enumerate(problem.laws):
             asked = np.reshape(law.nominal_restitution, (-1, 1))
             table[records.ASKED, :, number:] = np.where(happened[:, number:], asked, np.nan)
     columns = dict(zip(IMPACT_COLUMNS, table, strict=True))
+    if problem.motion is not None:  # along the plate, which does not move its surface
+        columns["plate_velocity_m_s"] = np.where(happened, 0.0, np.nan)
+        columns["plate_work_J"] = np.full(happened.shape, np.nan)
     if problem.oblique is not None:
         last = records.ALONG + len(OBLIQUE_IMPACT_COLUMNS)
         along = drops.rows[:, :most, records.ALONG : last].transpose(2, 0, 1).copy()
         columns |= dict(zip(OBLIQUE_IMPACT_COLUMNS, along, strict=True))
+    if problem.fluid is not None and ended.in_fluid is not None:
+        columns[f"{problem.fluid.key}_lost_J"] = ended.in_fluid.lost_before_impacts(most)
     return columns
 
 
 def _ledger(
-    state: Floats, energy_in: Floats, at_rest: Floats, along: dict[str, Floats]
+    ended: _Ended, state: Floats, at_rest: Floats, along: dict[str, Floats]
 ) -> tuple[dict[str, Floats], Floats]:
     """Return the energy ledger [J], and the energy that gravity and adhesion added [J].
 
-    It was added to that of the start. `along`: the entries of the motion along the plate.
+    It was added to that of the start.
+
+    Parameters
+    ----------
+    ended : _Ended
+        The drops.
+    state : array, shape (18, B)
+        Their numbers, of `core.drop_records`.
+    at_rest : array of bool, shape (B,)
+        Which have come to rest.
+    along : dict of str to array
+        The entries of the motion along the plate.
     """
     mass = state[records.MASS]
     gravity = state[records.GRAVITY]
@@ -403,8 +424,19 @@ def _ledger(
         "plastic_work_J": state[records.PLASTIC],
         "written_off_at_rest_J": state[records.WRITTEN_OFF],
     }
+    if ended.problem.motion is not None:
+        entries["drive_J"] = np.zeros(len(mass))
     if along:
         added += np.maximum(-along["potential_J"], 0.0)  # what gravity did down the plate
     for name, values in along.items():
         entries[name] = entries[name] + values if name in entries else values
+    energy_in = ended.energy_in
+    in_fluid = ended.in_fluid
+    if in_fluid is not None:
+        assert ended.problem.fluid is not None
+        energy_in = energy_in + in_fluid.liquid_at_start
+        liquid = in_fluid.energy_of_liquid(velocity)
+        entries["kinetic_J"] = entries["kinetic_J"] + liquid
+        given = in_fluid.to_fluid + in_fluid.liquid_at_start - liquid
+        entries[f"{ended.problem.fluid.key}_J"] = given
     return close_ledger(energy_in, added, entries), added

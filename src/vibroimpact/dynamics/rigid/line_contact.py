@@ -8,14 +8,14 @@ from typing import Literal
 
 import numpy as np
 
-from vibroimpact.arrays import Bools, Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.compiled import interpreted, law_addresses, law_coefficients
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, Contact, Piece
+from vibroimpact.dynamics.contact import Contact, Piece
 from vibroimpact.dynamics.core import line_records as records
 from vibroimpact.dynamics.core.events import ENDS, TENSIONS
 from vibroimpact.dynamics.core.law import law_at_touch
-from vibroimpact.dynamics.core.line import follow_line
+from vibroimpact.dynamics.core.line import CAPTURED, FAILED, follow_line
 from vibroimpact.dynamics.core.line_step import BY_ROOT, FREE
 from vibroimpact.dynamics.core.lines import follow_lines, read_line, time_line
 from vibroimpact.dynamics.core.normal_records import NormalGrid
@@ -26,7 +26,6 @@ from vibroimpact.dynamics.impact_conditions import ImpactConditions
 from vibroimpact.dynamics.law_coefficients import coefficients_of
 from vibroimpact.dynamics.rigid.phase_rules import normal_grid, phase_rules
 
-_OUTCOMES = np.array([RELEASED, CAPTURED, FAILED], dtype=np.int8)
 _MOST_STEPS = 1_000_000  # the stiffest sensible contacts need thousands
 FEW = 5
 """Number of contacts: fewer take less time in plain Python than numba takes to load."""
@@ -72,29 +71,6 @@ NO_CONTACTS = records.ContactManner(
 """What takes the place of the contacts of a law without a force."""
 
 
-def follow_contacts(
-    conditions: ImpactConditions, tolerance: float
-) -> tuple[Contact, Floats, Floats]:
-    """Return the contacts of B drops, their largest forces [N], and the times of these [s].
-
-    Times are since first touch.
-
-    Parameters
-    ----------
-    conditions : ImpactConditions
-        The impact: law, mass, gravity, approach speed.
-    tolerance : float
-        Relative error allowed.
-    """
-    size = len(conditions.mass)
-    contacts = records.LineContacts(np.zeros(size, dtype=np.int64), np.zeros((10, size)))
-    with coefficients_of(conditions.law, size) as coefficients:
-        manner = contact_manner(conditions.law, tolerance)
-        follow_lines(manner, coefficients, touches_of(conditions), contacts)
-    peak_force, time_of_peak = contacts.ends[6:8]
-    return contact_of(conditions, tolerance, contacts), peak_force, time_of_peak
-
-
 def touches_of(conditions: ImpactConditions) -> Floats:
     """Return the bodies of B impacts as they touch (5, B), as `follow_lines` takes them."""
     return np.array(
@@ -125,51 +101,31 @@ def contact_manner(
 
 
 def contact_of(
-    conditions: ImpactConditions, tolerance: float, contacts: records.LineContacts
+    conditions: ImpactConditions, tolerance: float, deepest: float, times: tuple[float, float]
 ) -> Contact:
-    """Return the contacts of B drops that the core has solved.
+    """Return the contact of one drop that the core has solved.
 
-    `conditions`, `tolerance`: as for `follow_contacts`.
+    Parameters
+    ----------
+    conditions : ImpactConditions
+        The impact.
+    tolerance : float
+        Relative error allowed.
+    deepest : float
+        Largest indentation [m].
+    times : tuple of two floats
+        Durations of the contact and of its compression [s].
     """
-    (
-        duration,
-        final_delta,
-        final_rate,
-        dissipated,
-        deepest,
-        time_of_deepest,
-        _,
-        _,
-        plastic,
-        stored,
-    ) = contacts.ends
+    duration, compressed = times
     law = conditions.law
-    size = len(conditions.mass)
-    law_after = law.after_compression(deepest)
-    compression = LineMotion(conditions, tolerance, "compression", time_of_deepest)
-    pieces = [Piece(np.arange(size), np.zeros(size), compression, law)]
-    rebounding = np.flatnonzero(duration > time_of_deepest)
-    if rebounding.size:
-        restitution = LineMotion(
-            conditions.take(rebounding),
-            tolerance,
-            "restitution",
-            (duration - time_of_deepest)[rebounding],
-        )
-        pieces.append(Piece(rebounding, time_of_deepest[rebounding], restitution, law_after))
-    return Contact(
-        pieces=pieces,
-        outcome=_OUTCOMES[contacts.outcomes],
-        duration=duration,
-        final_delta=final_delta,
-        final_rate=final_rate,
-        max_delta=deepest,
-        time_of_max_delta=time_of_deepest,
-        dissipated=dissipated,
-        plastic=plastic,
-        stored=stored,
-        law=law_after,
-    )
+    law_after = law.after_compression(np.array([deepest]))
+    compression = LineMotion(conditions, tolerance, "compression", np.array([compressed]))
+    pieces = [Piece(0.0, compression, law)]
+    if duration > compressed:
+        left = np.array([duration - compressed])
+        restitution = LineMotion(conditions, tolerance, "restitution", left)
+        pieces.append(Piece(compressed, restitution, law_after))
+    return Contact(pieces, law_after)
 
 
 def release_rates(conditions: ImpactConditions, tolerance: float) -> Floats:
@@ -197,9 +153,7 @@ def release_rates(conditions: ImpactConditions, tolerance: float) -> Floats:
             )
     missing = np.flatnonzero(np.isnan(rates))
     if missing.size:
-        contact, _, _ = follow_contacts(conditions.pick(missing), tolerance)
-        final_rates = np.where(contact.outcome == FAILED, np.nan, contact.final_rate)
-        rates[missing] = np.where(contact.outcome == CAPTURED, 0.0, final_rates)
+        rates[missing] = _followed_rates(conditions.pick(missing), tolerance)
     return rates
 
 
@@ -215,6 +169,17 @@ def _collocated_rate(conditions: ImpactConditions, tolerance: float) -> float:
         law, _manner(conditions, 0, tolerance), rules, normal_grid(0), room
     )
     return float(contact.end.rate) if solved else np.nan
+
+
+def _followed_rates(conditions: ImpactConditions, tolerance: float) -> Floats:
+    """Return what `release_rates` does, of contacts that the core follows."""
+    size = len(conditions.mass)
+    contacts = records.LineContacts(np.zeros(size, dtype=np.int64), np.zeros((10, size)))
+    with coefficients_of(conditions.law, size) as coefficients:
+        manner = contact_manner(conditions.law, tolerance)
+        follow_lines(manner, coefficients, touches_of(conditions), contacts)
+    rates = np.where(contacts.outcomes == FAILED, np.nan, contacts.ends[2])
+    return np.where(contacts.outcomes == CAPTURED, 0.0, rates)
 
 
 def law_and_bodies(
@@ -249,7 +214,7 @@ def gauss_rules(law: CompliantLaw, tolerance: float) -> PhaseRules:
 
 @dataclass(frozen=True)
 class LineMotion:
-    """The motion of b contacts in compression or restitution.
+    """The motion of one contact in compression or restitution.
 
     It is computed again where it is read.
 
@@ -261,7 +226,7 @@ class LineMotion:
         Relative error allowed.
     phase : {"compression", "restitution"}
         Which part of the contact this is.
-    duration : array, shape (b,)
+    duration : array, shape (1,)
         Of this part [s].
     """
 
@@ -270,36 +235,25 @@ class LineMotion:
     phase: Literal["compression", "restitution"]
     duration: Floats
 
-    def take(self, drops: Bools) -> LineMotion:
-        """Return the motion of the drops under a mask."""
-        if drops.all():
-            return self
-        return LineMotion(
-            self.conditions.pick(np.flatnonzero(drops)),
-            self.tolerance,
-            self.phase,
-            self.duration[drops],
-        )
-
     @cached_property
     def recorded(self) -> RecordedContact:
-        """The contact of one drop with its steps."""
+        """The contact with its steps."""
         return RecordedContact.of(self.conditions, self.tolerance)
 
     @property
     def begins_at(self) -> float:
-        """Return the indentation at its start, of one drop [m]."""
+        """Return the indentation at its start [m]."""
         if self.phase == "compression":
             return self.recorded.law.touch
         return self.recorded.contact.deepest
 
     @property
     def begins(self) -> float:
-        """Time since touch at which it begins, of one drop [s]."""
+        """Time since touch at which it begins [s]."""
         return 0.0 if self.phase == "compression" else self.recorded.contact.time_of_deepest
 
     def grid(self) -> Floats:
-        """Return times since the start at which the motion of one drop is well resolved [s].
+        """Return times since the start at which the motion is well resolved [s].
 
         That of the largest force is one of them.
         """
@@ -308,8 +262,8 @@ class LineMotion:
             times = np.unique(np.append(times, self.recorded.contact.time_of_peak_force))
         return np.append(times[times < self.duration[0]], self.duration[0])
 
-    def at(self, time: Floats, conditions: ImpactConditions) -> tuple[Floats, Floats, Floats]:
-        """Return indentation [m], its rate [m/s] and the energy dissipated [J] of one drop.
+    def at(self, time: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return indentation [m], its rate [m/s] and the energy dissipated [J].
 
         They are those at times since the start [s].
         """

@@ -10,18 +10,21 @@ from typing import NamedTuple, overload
 import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
+from vibroimpact.bodies.ball import mean_density
 from vibroimpact.contact.law import CompliantLaw, InstantaneousLaw
 from vibroimpact.dynamics.bounce import Bounce
-from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED
 from vibroimpact.dynamics.core import drop_records as records
-from vibroimpact.dynamics.core.line_records import LineContacts
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.impact_conditions import ImpactConditions, impact_conditions_of
 from vibroimpact.dynamics.oblique.rubbed_contact import RubbedContact
-from vibroimpact.dynamics.oblique.state import ImpulseAlong, ObliqueContacts, Sphere, State
+from vibroimpact.dynamics.oblique.state import (
+    ContactAlong,
+    ImpulseAlong,
+    Sphere,
+    State,
+    spheres_of,
+)
 from vibroimpact.dynamics.problem import Problem
-
-_ALONE = np.zeros(1, dtype=np.intp)
 
 
 class Start(NamedTuple):
@@ -35,20 +38,6 @@ class Start(NamedTuple):
     def take(self, drop: int) -> Start:
         """Return the start of one drop, as that of a batch of one."""
         return Start(self.normal[[drop]], self.along[drop : drop + 1])
-
-
-def spheres_of(problem: Problem) -> Sphere:
-    """Return the spheres of a problem whose drops move along the plate."""
-    oblique = problem.oblique
-    assert oblique is not None
-    ones = np.ones(problem.shape or 1)
-    gravity = np.array([value * ones for value in oblique.gravity])
-    return Sphere(
-        problem.sphere.mass * ones,
-        problem.sphere.contact_offset * ones,
-        problem.sphere_inertia * ones,
-        gravity,
-    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,17 +107,10 @@ class RecordedDrop(Sequence[Bounce]):
         flight = self._flight(number)
         oblique = self._along(number)
         if number == len(self.rows):
-            return Bounce(_ALONE, flight, np.array([self.end_time]), _ALONE[:0], oblique=oblique)
+            return Bounce(flight, np.array([self.end_time]), oblique=oblique)
         touch = self.rows[number, [records.TOUCH]]
         if isinstance(self.problem.laws[0], InstantaneousLaw):
-            return Bounce(
-                _ALONE,
-                flight,
-                touch,
-                _ALONE,
-                oblique=oblique,
-                oblique_contacts=self._struck_along(number),
-            )
+            return Bounce(flight, touch, oblique=oblique, along=self._struck_along(number))
         # only where it is needed: it loads much
         from vibroimpact.dynamics.rigid.line_contact import contact_of
 
@@ -137,29 +119,35 @@ class RecordedDrop(Sequence[Bounce]):
         law = self._law(number, speed)
         mass = self.problem.sphere.mass * np.ones(1)
         conditions = impact_conditions_of(law, mass, self._gravity, speed)
+        times = float(row[records.DURATION]), float(row[records.COMPRESSION])
+        deepest = float(row[records.INDENTATION])
         return Bounce(
-            drops=_ALONE,
             flight=flight,
             flight_end=touch,
-            contact_drops=_ALONE,
-            contact=contact_of(conditions, self.problem.tolerance, _contacts_of(row)),
-            conditions=conditions,
+            contact=contact_of(conditions, self.problem.tolerance, deepest, times),
             oblique=oblique,
-            oblique_contacts=self._rubbed_along(number, conditions),
+            along=self._rubbed_along(number, conditions),
         )
 
     def _flight(self, number: int) -> Flight:
         """Return the flight before an impact."""
-        if number == 0:
-            gap, velocity = self.start.normal.T
-            return Flight(np.zeros(1), gap, velocity, self._gravity)
-        before = self.rows[number - 1]
-        return Flight(
-            start=before[[records.TOUCH]] + before[[records.DURATION]],
-            gap=before[[records.RELEASE_GAP]],
-            velocity=before[[records.RELEASE_VELOCITY]],
-            gravity=self._gravity,
-        )
+        start = np.zeros(1)
+        gap, velocity = self.start.normal.T
+        if number > 0:
+            before = self.rows[number - 1]
+            start = before[[records.TOUCH]] + before[[records.DURATION]]
+            gap = before[[records.RELEASE_GAP]]
+            velocity = before[[records.RELEASE_VELOCITY]]
+        if self.problem.fluid is None:
+            return Flight(start, gap, velocity, self._gravity)
+        # only where it is needed: it loads much
+        from vibroimpact.dynamics.flight_in_fluid import flight_of
+
+        along = np.zeros((0, 1))
+        oblique = self._along(number)
+        if oblique is not None:
+            along = oblique[1].velocity
+        return flight_of(self.problem, start, gap, velocity, along)
 
     def _along(self, number: int) -> tuple[Sphere, State] | None:
         """Return the sphere, and its motion along the plate at the start of a flight, if any."""
@@ -170,21 +158,21 @@ class RecordedDrop(Sequence[Bounce]):
             state = _released_along(self.rows[number - 1])
         return self._sphere, state
 
-    def _struck_along(self, number: int) -> ObliqueContacts:
+    def _struck_along(self, number: int) -> ContactAlong | None:
         """Return the motion along the plate after an impulse, if there is any."""
         if self.problem.oblique is None:
-            return ()
+            return None
         row = self.rows[number]
-        return ((_ALONE, ImpulseAlong(_released_along(row), row[[records.FRICTION_LOST]])),)
+        return ImpulseAlong(_released_along(row), row[[records.FRICTION_LOST]])
 
-    def _rubbed_along(self, number: int, conditions: ImpactConditions) -> ObliqueContacts:
+    def _rubbed_along(self, number: int, conditions: ImpactConditions) -> ContactAlong | None:
         """Return the motion along the plate in a contact, if there is any."""
         if self.problem.oblique is None:
-            return ()
+            return None
         row = self.rows[number]
         columns = row[records.ALONG :]
         before = State.of_rows(columns[[0, 1, 2, 3, 6, 7, 8]][None])
-        contact = RubbedContact(
+        return RubbedContact(
             conditions,
             self.problem.tolerance,
             self.problem.oblique.friction,
@@ -192,7 +180,6 @@ class RecordedDrop(Sequence[Bounce]):
             before,
             row[[records.DURATION]],
         )
-        return ((_ALONE, contact),)
 
     @cached_property
     def _sphere(self) -> Sphere:
@@ -200,11 +187,15 @@ class RecordedDrop(Sequence[Bounce]):
 
     @cached_property
     def _gravity(self) -> Floats:
-        return np.asarray(self.problem.gravity * np.ones(1))
+        return np.asarray(self.problem.net_gravity * np.ones(1))
 
     def _law(self, number: int, speed: Floats) -> CompliantLaw:
         """Return the law of an impact at an approach speed [m/s], with its memory."""
         law = self.problem.law_at(self.problem.law_of(number), speed)
+        if self.problem.liquid is not None:
+            radius = self.problem.sphere.contact_offset * np.ones(1)
+            density = mean_density(self.problem.sphere.mass * np.ones(1), radius)
+            law = self.problem.liquid.around(law, speed, radius, density)
         assert isinstance(law, CompliantLaw)
         if not self.problem.memory_lasts:
             return law
@@ -218,27 +209,3 @@ def _released_along(row: Floats) -> State:
     place = row[[records.RELEASE_X, records.RELEASE_Y]]
     columns = row[records.ALONG :]
     return State.of_rows(np.concatenate([place, columns[[4, 5, 9, 10, 11]]])[None])
-
-
-def _contacts_of(row: Floats) -> LineContacts:
-    """Return the contact of an impact, from its row, as the core gives it."""
-    separation = row[records.SEPARATION]
-    outcome = CAPTURED if separation == 0.0 else RELEASED
-    if np.isnan(separation):
-        outcome = FAILED
-    touch = row[records.TOUCH]
-    ends = np.array(
-        [
-            row[records.DURATION],
-            -row[records.RELEASE_GAP],
-            -row[records.RELEASE_VELOCITY],
-            row[records.DAMPED],
-            row[records.INDENTATION],
-            row[records.COMPRESSION],
-            row[records.FORCE],
-            row[records.TIME_OF_FORCE] - touch,
-            row[records.PLASTIC_WORK],
-            row[records.LEFT_STORED],
-        ]
-    )
-    return LineContacts(np.array([outcome]), ends[:, None])

@@ -24,6 +24,10 @@ class MotionInContact(Protocol):
     """The motion of one drop in a part of its contact."""
 
     @property
+    def conditions(self) -> ImpactConditions:
+        """Return the impact."""
+
+    @property
     def duration(self) -> Floats:
         """Return the duration [s] (1,)."""
 
@@ -34,7 +38,7 @@ class MotionInContact(Protocol):
     def grid(self) -> Floats:
         """Return times since the start at which it is well resolved [s]."""
 
-    def at(self, time: Floats, conditions: ImpactConditions) -> tuple[Floats, Floats, Floats]:
+    def at(self, time: Floats) -> tuple[Floats, Floats, Floats]:
         """Return indentation [m], its rate [m/s] and the energy dissipated [J].
 
         They are those at times since the start [s].
@@ -81,7 +85,7 @@ class ContactSegment:
     def at(self, time: Floats) -> Motion:
         """Return the motion at times [s] since the start of the segment."""
         law = self.conditions.law
-        delta, velocity, dissipated = self.motion.at(time, self.conditions)
+        delta, velocity, dissipated = self.motion.at(time)
         elastic, dissipative = law.forces(delta, velocity, self.conditions.approach_speed)
         force = elastic + dissipative
         if law.tension == "cut":

@@ -122,13 +122,13 @@ def segments_of(bounce: Bounce) -> list[Segment]:
         launch = float(bounce.ride.end[0])
         if touch < launch < np.inf:
             segments.append(RideSegment(touch, launch, bounce.ride, launch))
-    if bounce.contact is None or bounce.conditions is None:
+    if bounce.contact is None:
         return segments
     for piece in bounce.contact.pieces:
-        start = touch + float(piece.start[0])
+        start = touch + piece.start
         end = start + float(piece.motion.duration[0])
         motion = cast(MotionInContact, piece.motion)
-        segments.append(ContactSegment(start, end, motion, bounce.conditions.under(piece.law)))
+        segments.append(ContactSegment(start, end, motion, motion.conditions.under(piece.law)))
     return segments
 
 

@@ -21,8 +21,8 @@ from vibroimpact.dynamics.sensors.antialias import FINENESS, HALF_LENGTH, antial
 from vibroimpact.dynamics.sensors.filtered_chain import add_responses, filtered_chain
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, measuring_chain
 from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.vibrating.drop_system import bases_of_plate
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
-from vibroimpact.dynamics.vibrating.vibrating_bodies import bases_of_plate
 from vibroimpact.errors import InputError
 
 _ROWS = 256

@@ -42,8 +42,8 @@ from vibroimpact.dynamics.sensors.sampled import (
 from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
 from vibroimpact.dynamics.sensors.sound import heard
 from vibroimpact.dynamics.sensors.steady_outputs import steady_outputs
+from vibroimpact.dynamics.vibrating.drop_system import bases_of_plate
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
-from vibroimpact.dynamics.vibrating.vibrating_bodies import bases_of_plate
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:

@@ -35,8 +35,8 @@ from vibroimpact.dynamics.sensors.sampled import (
     sample_filtered,
 )
 from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.vibrating.drop_system import bases_of_plate
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
-from vibroimpact.dynamics.vibrating.vibrating_bodies import bases_of_plate
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.vibrating.segments import VibratingSegment

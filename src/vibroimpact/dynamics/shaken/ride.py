@@ -16,9 +16,9 @@ _MOST_POINTS = 4001
 
 @dataclass(frozen=True)
 class Ride:
-    """Rides of B spheres under a law without a force; arrays are (B,).
+    """The ride of a sphere under a law without a force; arrays are (1,).
 
-    `end` [s]: when each is launched, or its time of touch if it rebounds; infinite if it stays.
+    `end` [s]: when it is launched, or its time of touch if it rebounds; infinite if it stays.
     `mass` [kg], `gravity` [m/s^2].
     """
 
@@ -26,11 +26,6 @@ class Ride:
     mass: Floats
     gravity: Floats
     motion: PlateMotion
-
-    def of(self, drop: int) -> Ride:
-        """Return the ride of one sphere."""
-        drops = np.array([drop])
-        return Ride(self.end[drops], self.mass[drops], self.gravity[drops], self.motion)
 
     def surface(self, time: Floats) -> Floats:
         """Return the motion of the plate's surface upwards at times [s] (...), (3, ...).

@@ -9,14 +9,9 @@ from functools import cached_property
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats
-from vibroimpact.dynamics.core.contact_records import Bodies, Parts
+from vibroimpact.dynamics.core.contact_records import Bodies
 from vibroimpact.dynamics.core.records import Coordinates, Start, Surfaces
-from vibroimpact.dynamics.core.surface_friction_records import NUMBERS
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
-from vibroimpact.dynamics.vibrating.radau_eigenbasis import NODES_PER_STRETCH
-
-_PARTS = 64
-"""Parts of the motion that the core writes before they are read."""
 
 # relative rounding error of the kinetic energy of the rigid motions that move the contacts
 _RIGID_ROUNDING = 2e-15
@@ -128,13 +123,6 @@ class ContactView:
         free = replace(system, offset=np.zeros_like(system.offset), load=np.zeros_like(system.load))
         return ContactView(free, self.contacts, self.modes)
 
-    @cached_property
-    def room(self) -> Parts:
-        """Room for parts of a motion, which are copied before others are written there."""
-        system = self.system
-        directions = 0 if system.along is None else len(system.along)
-        return _room_for_parts(system.number, len(system.rate), directions)
-
     def start(self, state: State) -> Start:
         """Return the state of the surfaces in a state of the system."""
         modes = self.modes
@@ -160,37 +148,3 @@ def contact_view(system: LinearSystem, contacts: Iterable[int]) -> ContactView:
         system.views[numbers] = ContactView(system, numbers, system.shared_modes[numbers])
     view: ContactView = system.views[numbers]
     return view
-
-
-def _room_for_parts(number: int, elements: int, directions: int) -> Parts:
-    """Return arrays for the parts of the motion of a system.
-
-    `number`: of its coordinates. `elements`: of massless elements. `directions`: of friction.
-    """
-    nodes = NODES_PER_STRETCH
-    return Parts(
-        kind=np.zeros(_PARTS, dtype=np.int64),
-        time_map=np.zeros(_PARTS, dtype=np.int64),
-        start=np.empty(_PARTS),
-        length=np.empty(_PARTS),
-        displacement=np.empty((_PARTS, number)),
-        velocity=np.empty((_PARTS, number)),
-        local=np.empty((_PARTS, elements)),
-        memories=np.zeros(_PARTS, dtype=np.int64),
-        static=np.empty((_PARTS, nodes)),
-        force=np.empty((_PARTS, nodes)),
-        approach=np.empty((_PARTS, nodes + 1)),
-        rate=np.empty((_PARTS, nodes + 1)),
-        closing=np.empty((_PARTS, nodes + 1)),
-        delta=np.empty((_PARTS, nodes + 1)),
-        work=np.empty(_PARTS),
-        dissipated=np.empty(_PARTS),
-        roughness=np.empty(_PARTS),
-        separation_loss=np.empty(_PARTS),
-        indentation=np.empty((_PARTS, nodes + 1)),
-        turned_at=np.empty(_PARTS + 1),
-        late_loss=np.zeros(1),
-        friction=np.empty((_PARTS, directions, nodes)),
-        slip=np.empty((_PARTS, directions, nodes)),
-        sphere=np.empty((_PARTS, 2, NUMBERS)),
-    )

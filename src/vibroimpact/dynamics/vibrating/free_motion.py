@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.arrays import Bools, Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
 
@@ -33,10 +33,6 @@ class FreePhase:
     def duration(self) -> Floats:
         """Its length [s], as an array of one."""
         return np.array([self.length])
-
-    def take(self, drops: Bools) -> FreePhase:
-        """Return itself: it belongs to one drop."""
-        return self
 
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (...)."""

@@ -10,25 +10,22 @@ state before and after (P. C. Mueller, Chaos, Solitons & Fractals 5:1671, 1995).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.core.contact_records import RECOIL, STRETCH
+from vibroimpact.dynamics.core.drop_records import RELEASE_VELOCITY, TOUCH
 from vibroimpact.dynamics.core.peak import nodal_value_between
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.vibrating.contact_view import contact_view
-from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
-from vibroimpact.dynamics.vibrating.recorded_contact import MotionPart, RecordedContact
+from vibroimpact.dynamics.vibrating.recorded_drop import RecordedDrop
+from vibroimpact.dynamics.vibrating.recorded_motion import RecordedMotion
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.stretch_tangent import propagate_difference
-
-if TYPE_CHECKING:
-    from vibroimpact.dynamics.bounce import Bounce
 
 # relative step of a law's closing speed, memory and largest indentation, for finite differences
 _STEP = 1e-6
@@ -36,48 +33,34 @@ _JUMP = 1e-6  # of the force: a smaller change is no jump
 _SLOW = 0.1  # of the closing speed: lower bound of the separation speed in a relative change
 
 
-class NeighbouringDrops:
-    """Neighbouring drops of a run, one of each, propagated along with it."""
+def growth_of(problem: Problem, drop: RecordedDrop) -> Floats:
+    """Return the growth of a relative change of a drop by each of its impacts [-].
 
-    def __init__(self, problem: Problem, mass: Floats, system: LinearSystem) -> None:
-        by_height = problem.speed is None
-        height_or_speed = np.broadcast_to(
-            np.asarray(problem.height if by_height else problem.speed, dtype=float), mass.shape
-        )
-        changes = np.sqrt(mass) * height_or_speed  # of the coordinate of the sphere
-        self._drops = [_Neighbour(system, change, by_height) for change in changes.tolist()]
+    The drop is changed in its height, or in its speed where that is given. The growth is the
+    largest of the relative changes of the closing speed, of the largest force, and of the
+    separation speed (relative to at least a tenth of the closing speed). For a rigid drop from a
+    height it would be 0.6, as Hertz's force goes with the power 0.6 of the height.
 
-    def follow(
-        self, bounce: Bounce, impacts: Sequence[Sequence[RecordedContact | MotionPart]]
-    ) -> Floats:
-        """Return the growth of a relative change of the drop by the impact of a bounce [-].
-
-        There is one value per drop of its contact. The drop is changed in its height, or in its
-        speed where that is given. The growth is the largest of the relative changes of the closing
-        speed, of the largest force, and of the separation speed (relative to at least a tenth of
-        the closing speed). For a rigid drop from a height it would be 0.6, as Hertz's force goes
-        with the power 0.6 of the height.
-
-        Parameters
-        ----------
-        bounce : Bounce
-            The next flight and contact of the drops, of which a body vibrates.
-        impacts : sequence of sequences of RecordedContact and MotionPart
-            The histories of the impacts of the drops in contact.
-        """
-        durations = bounce.flight_end - bounce.flight.start
-        for drop, motion, duration in zip(bounce.drops, bounce.motions, durations, strict=True):
-            self._drops[drop].fly(motion, float(duration))
-        if bounce.contact is None:
-            return np.zeros(0)
-        for drop, sections in zip(bounce.contact_drops, impacts, strict=True):
-            self._drops[drop].pass_impact(sections)
-        return np.array(
-            [
-                self._drops[drop].leave(-float(rate))
-                for drop, rate in zip(bounce.contact_drops, bounce.contact.final_rate, strict=True)
-            ]
-        )
+    Parameters
+    ----------
+    problem : Problem
+        Of one drop, of which a body vibrates.
+    drop : RecordedDrop
+        Its flights and impacts.
+    """
+    recorded = drop.recorded
+    is_by_height = problem.speed is None
+    height_or_speed = problem.height if is_by_height else problem.speed
+    assert height_or_speed is not None
+    change = float(np.sqrt(problem.sphere.mass) * height_or_speed)  # of the sphere's coordinate
+    neighbour = _Neighbour(recorded.system, change, is_by_height)
+    growth = np.empty(len(drop.rows))
+    for number, row in enumerate(drop.rows):
+        flight, motion = drop.flight(number)
+        neighbour.fly(motion, float(row[TOUCH] - flight.start[0]))
+        neighbour.pass_impact(recorded, recorded.parts_of(number))
+        growth[number] = neighbour.leave(float(row[RELEASE_VELOCITY]))
+    return growth
 
 
 @dataclass
@@ -128,44 +111,36 @@ class _Neighbour:
         self.separated = not inside
         self.last_stretch = None
 
-    def pass_impact(self, sections: Sequence[RecordedContact | MotionPart]) -> None:
-        """Propagate through an impact."""
-        for section in sections:
-            if isinstance(section, MotionPart):
-                assert isinstance(section.motion, FreePhase)  # between two contacts
-                self.fly(section.motion.free, section.motion.length)
+    def pass_impact(self, recorded: RecordedMotion, numbers: range) -> None:
+        """Propagate through the parts of an impact."""
+        for first, end in recorded.phases(numbers):
+            kind = int(recorded.parts.kind[first])
+            if kind == STRETCH:
+                self.pass_through(recorded, first, end)
             else:
-                self.pass_contact(section)
+                free = recorded.free(first)
+                self.fly(free.free, free.length, inside=kind == RECOIL)
 
-    def pass_contact(self, contact: RecordedContact) -> None:
-        """Propagate through the parts of a contact."""
-        for first, end in contact.phases():
-            if contact.parts.kind[first]:
-                self.pass_through(contact, first, end)
-            else:
-                recoil = contact.recoil(first)
-                self.fly(recoil.free, recoil.length, inside=True)
-
-    def pass_through(self, contact: RecordedContact, first: int, end: int) -> None:
+    def pass_through(self, recorded: RecordedMotion, first: int, end: int) -> None:
         """Propagate through stretches of contact under one law, from the first one to an end."""
-        local = contact.local(first)
+        local = recorded.local(int(recorded.parts.law[first]))
         if self.separated:
-            self.begin_contact(contact.stretch(first))
+            self.begin_contact(recorded.stretch(first))
         elif local is not self.local:
-            self.update_memory(contact.stretch(first))
+            self.update_memory(recorded.stretch(first))
         variations = _law_variations(local, self.law_differences)
         self.difference, force_differences = propagate_difference(
-            contact, (first, end), self.difference, variations
+            recorded, (first, end), self.difference, variations
         )
         self.force_difference = float(force_differences[-1, -1])
-        self.last_stretch = contact.stretch(end - 1)
+        self.last_stretch = recorded.stretch(end - 1)
         assert self.impact is not None  # it has touched
-        forces = contact.parts.force[first:end].max(axis=1)
+        forces = recorded.parts.force[first:end].max(axis=1)
         strongest = int(forces.argmax())
         if forces[strongest] > self.impact.force:
             self.impact.force = float(forces[strongest])
             self.impact.strongest = (
-                contact.stretch(first + strongest),
+                recorded.stretch(first + strongest),
                 force_differences[strongest],
             )
 

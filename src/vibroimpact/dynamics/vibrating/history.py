@@ -12,6 +12,7 @@ from vibroimpact.dynamics.columns import MOTION_COLUMNS
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.shaken.statement import PlateMotion
 from vibroimpact.dynamics.shaken.steady import steady_phasors
+from vibroimpact.dynamics.vibrating.drop_system import bases_of_plate, centre_of, slices_of
 from vibroimpact.dynamics.vibrating.fluid_motion import FluidMotion
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
@@ -19,7 +20,6 @@ from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 from vibroimpact.dynamics.vibrating.segments import VibratingSegment
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
-from vibroimpact.dynamics.vibrating.vibrating_bodies import bases_of_plate, centre_of, slices_of
 
 if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices

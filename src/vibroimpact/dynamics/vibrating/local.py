@@ -64,14 +64,10 @@ class LocalContact:
 
         They follow from the law and the compliance in series.
         """
-        series = self.series
-        coefficients_of_series = np.array(
-            [series.linear, series.unit, *series.factors, series.force], dtype=float
-        )
         return core.law_at_touch(
             law_addresses(type(self.law)),
             law_coefficients(self.law),
-            coefficients_of_series,
+            self.series.coefficients,
             float(self.approach_speed),
         )
 

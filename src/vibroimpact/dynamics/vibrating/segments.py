@@ -120,15 +120,17 @@ def vibrating_timeline(
         End of the run [s].
     """
     segments: list[VibratingSegment] = []
-    lost_before = np.zeros(bounces[0].motions[0].system.number + 2)
+    first_motion = bounces[0].motion
+    assert first_motion is not None  # a body vibrates
+    lost_before = np.zeros(first_motion.system.number + 2)
     for bounce in bounces:
         touch = float(bounce.flight_end[0])
-        segments.append(
-            VibratingSegment(float(bounce.flight.start[0]), touch, bounce.motions[0], lost_before)
-        )
+        assert bounce.motion is not None  # a body vibrates
+        start = float(bounce.flight.start[0])
+        segments.append(VibratingSegment(start, touch, bounce.motion, lost_before))
         lost_before = segments[-1].lost_after
         for piece in bounce.contact.pieces if bounce.contact is not None else ():
-            begin = touch + float(piece.start[0])
+            begin = touch + piece.start
             assert isinstance(piece.motion, (VibratingStretch, FreePhase))
             segments.append(
                 VibratingSegment(begin, begin + piece.motion.length, piece.motion, lost_before)

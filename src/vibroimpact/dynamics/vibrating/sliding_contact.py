@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.arrays import Drops, Floats
-from vibroimpact.dynamics.contact import Contact
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.oblique.oblique_motion import ObliqueMotion
-from vibroimpact.dynamics.oblique.state import ObliqueContacts, Sphere, State, state_after
+from vibroimpact.dynamics.oblique.state import Sphere, State, state_after
+from vibroimpact.dynamics.vibrating.recorded_motion import RecordedMotion
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.surface_friction import SlidingStretch
 
@@ -27,10 +27,6 @@ class SlidingContact:
     before: State
     duration: Floats
     stretches: Sequence[tuple[float, SlidingStretch]]
-
-    def of(self, drop: int) -> SlidingContact:
-        """Return itself: it belongs to one drop."""
-        return self
 
     def at(self, time: Floats) -> tuple[State, Floats, Floats]:
         """Return states, friction forces on the sphere [N] (2, T) and energy taken [J] (T,).
@@ -87,24 +83,25 @@ class SlidingContact:
         return state, work, np.array([microslip])
 
 
-def sliding_contacts(
-    oblique: ObliqueMotion, drops: Drops, contact: Contact, row: dict[str, Floats]
-) -> ObliqueContacts:
-    """Advance drops along the plate through their impacts; return the motion in them.
+def sliding_contact(
+    oblique: ObliqueMotion, recorded: RecordedMotion, impact: int, duration: float
+) -> SlidingContact:
+    """Return the motion along the plate in an impact of one drop, from its state before it.
 
-    Their columns are written to a row of the impact table.
+    Parameters
+    ----------
+    oblique : ObliqueMotion
+        Of the drop, before the impact.
+    recorded : RecordedMotion
+        Its motion.
+    impact : int
+        Number of the impact, counted from 0.
+    duration : float
+        Of the impact [s].
     """
-    stretches: list[list[tuple[float, SlidingStretch]]] = [[] for _ in drops]
-    for piece in contact.pieces:
-        if isinstance(piece.motion, VibratingStretch) and piece.motion.sliding is not None:
-            start = float(piece.start[0])
-            stretches[int(piece.drops[0])].append((start, piece.motion.sliding))
-    contacts = []
-    for number, drop in enumerate(drops):
-        index = np.array([number])
-        here = np.array([drop])
-        sphere, before = oblique.now(here)
-        sliding = SlidingContact(sphere, before, contact.duration[index], stretches[number])
-        oblique.finish(here, *sliding.end, row)
-        contacts.append((index, sliding))
-    return tuple(contacts)
+    stretches = []
+    for part in recorded.parts_of(impact):
+        motion = recorded.motion(part)
+        if isinstance(motion, VibratingStretch) and motion.sliding is not None:
+            stretches.append((float(recorded.parts.start[part]), motion.sliding))
+    return SlidingContact(oblique.sphere, oblique.state, np.array([duration]), stretches)

@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from vibroimpact.arrays import Bools, Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.core.path import stretch_path
 from vibroimpact.dynamics.core.peak import peak_of_force
@@ -70,10 +70,6 @@ class VibratingStretch:
     def duration(self) -> Floats:
         """Its length [s], as an array of one."""
         return np.array([self.length])
-
-    def take(self, drops: Bools) -> VibratingStretch:
-        """Return itself: it belongs to one drop."""
-        return self
 
     @property
     def rule(self) -> Rule:

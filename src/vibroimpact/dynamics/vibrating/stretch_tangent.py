@@ -12,11 +12,11 @@ from vibroimpact.dynamics.core.tangent import propagate
 from vibroimpact.dynamics.vibrating.linear_system import State
 from vibroimpact.dynamics.vibrating.local import LocalContact, contacts_of
 from vibroimpact.dynamics.vibrating.radau_eigenbasis import bases_of
-from vibroimpact.dynamics.vibrating.recorded_contact import RecordedContact
+from vibroimpact.dynamics.vibrating.recorded_motion import RecordedMotion
 
 
 def propagate_difference(
-    contact: RecordedContact,
+    recorded: RecordedMotion,
     between: tuple[int, int],
     difference: State,
     variations: Sequence[tuple[LocalContact, float]],
@@ -27,8 +27,8 @@ def propagate_difference(
 
     Parameters
     ----------
-    contact : RecordedContact
-        A contact.
+    recorded : RecordedMotion
+        The motion of a drop.
     between : tuple of two ints
         The first of its stretches under one law, and the one after the last.
     difference : State
@@ -39,8 +39,8 @@ def propagate_difference(
         change of its force counts.
     """
     first, end = between
-    local = contact.local(first)
-    parts = contact.parts
+    parts = recorded.parts
+    local = recorded.local(int(parts.law[first]))
     solved = contact_records.Solved(
         time_map=parts.time_map[first:end],
         length=parts.length[first:end],
@@ -51,7 +51,7 @@ def propagate_difference(
     weights = np.array([weight for _, weight in variations], dtype=float)
     state, forces = propagate(
         bases_of(local.law.root),
-        contact.view.without_load.bodies,
+        recorded.view(first).without_load.bodies,
         laws,
         weights,
         solved,

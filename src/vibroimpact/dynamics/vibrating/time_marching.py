@@ -9,7 +9,7 @@ approach, or a touch at another contact. The stretch is then solved again so tha
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from operator import attrgetter
 
@@ -48,7 +48,6 @@ from vibroimpact.dynamics.vibrating.next_touch import (
     times_apart,
 )
 from vibroimpact.dynamics.vibrating.radau_eigenbasis import GRID
-from vibroimpact.dynamics.vibrating.recorded_contact import MotionPart
 from vibroimpact.dynamics.vibrating.solve_stretch import StretchAhead
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.stretch_end import (
@@ -66,6 +65,14 @@ _ROUNDING = 1e-14  # of the deepest indentation
 _NO_FORCE = 1e-10  # of the largest force
 _NEAR_TOUCH = 1e-3  # of the way in a stretch: surfaces that come so near are looked at closely
 _FASTER_BETWEEN = 4.0  # of the largest speed at a node: bound of that between the nodes
+
+
+@dataclass(frozen=True)
+class MotionPart:
+    """A part of the history of a march: its start [s] and its motion."""
+
+    start: float
+    motion: VibratingStretch | FreePhase
 
 
 class NotIntegrable(ComputationError):

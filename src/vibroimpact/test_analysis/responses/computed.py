@@ -9,7 +9,7 @@ import numpy as np
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.sensor import Sensor
-from vibroimpact.dynamics.vibrating.vibrating_bodies import bases_of_plate
+from vibroimpact.dynamics.vibrating.drop_system import bases_of_plate
 from vibroimpact.identification.plate import compliances_of, shapes_of
 
 _ORDERS = {"m/N": 0, "m/s/N": 1, "m/s2/N": 2}

@@ -1,0 +1,56 @@
+"""What a problem says of the start, the laws and the end of a run."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.contact.law import ContactLaw
+from vibroimpact.dynamics.core import drop_records as records
+from vibroimpact.dynamics.core import stop_rules
+from vibroimpact.dynamics.core.drop_records import StopRules
+from vibroimpact.dynamics.outcome import Outcome
+from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
+
+_APART = 4e-15  # of the amplitude of a shaken plate: the rounding error of its place
+
+OUTCOME_CODES = np.array([Outcome(ending).code for ending in records.ENDINGS])
+"""Codes of outcomes by the numbers of endings."""
+
+IS_AT_REST = np.array([Outcome(ending).at_rest for ending in records.ENDINGS])
+"""Which endings are rest, by their numbers."""
+
+
+def laws_of(problem: Problem) -> list[ContactLaw]:
+    """Return the laws of the impacts of a problem, of which the last one goes on.
+
+    Where the memory lasts, that of the first law at the start is that of all.
+    """
+    if not problem.memory_lasts:
+        return list(problem.laws)
+    memories = problem.laws[0].memories()
+    return [law.changed(memories) for law in problem.laws]
+
+
+def stop_rules_of(problem: Problem) -> StopRules:
+    """Return the rules that can end a run; of two that end it at one time the first counts."""
+    rules: list[tuple[int, float, int]] = []
+    if problem.duration is not None:
+        rules.append((stop_rules.AT_TIME, problem.duration, records.END_BY_DURATION))
+    if problem.impacts is not None:
+        rules.append((stop_rules.AFTER_IMPACTS, problem.impacts, records.END_BY_IMPACTS))
+    else:
+        rules.append((stop_rules.AFTER_IMPACTS, MOST_IMPACTS, records.END_AT_LIMIT))
+    if problem.oblique is not None:
+        rules.append((stop_rules.BESIDE_PLATE, 0.0, records.END_BESIDE))
+    kinds, values, endings = zip(*rules, strict=True)
+    return StopRules(np.array(kinds), np.array(values, dtype=float), np.array(endings))
+
+
+def start_of(problem: Problem) -> tuple[float, float]:
+    """Return the gap [m] and the velocity upwards [m/s] of a single drop at its start."""
+    if problem.height is not None:
+        return float(problem.height - problem.sphere.contact_offset), float(problem.velocity)
+    # at touch: apart by the rounding error of the place of a plate that is shaken
+    gap = problem.surface(0.0)[0] + _APART * np.abs(problem.surface_phasors).sum()
+    assert problem.speed is not None  # the problem has seen to it
+    return float(gap), -float(problem.speed)

@@ -1,0 +1,92 @@
+"""Hard spheres on a rigid plate that is shaken, from a problem to a response."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from vibroimpact.dynamics.bounce import BouncesOfSeveral
+from vibroimpact.dynamics.columns import (
+    CARRIED_IMPACT_COLUMNS,
+    IMPACT_COLUMNS,
+    OBLIQUE_IMPACT_COLUMNS,
+    SHAKEN_IMPACT_COLUMNS,
+)
+from vibroimpact.dynamics.energy import close_ledger, ledger_holds
+from vibroimpact.dynamics.impact_rows import stacked_tables, table_of
+from vibroimpact.dynamics.oblique.state import friction_parts
+from vibroimpact.dynamics.outcome import Outcome
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.progress import of_several
+from vibroimpact.dynamics.response import Response
+from vibroimpact.dynamics.rest import Rest
+from vibroimpact.dynamics.shaken.hard_drop import HardDrop
+
+
+def follow(
+    problem: Problem, progress: Callable[[float], None] | None, *, keeps_bounces: bool
+) -> Response:
+    """Return the response of the drops of a problem, with arrays of a batch.
+
+    Parameters
+    ----------
+    problem : Problem
+        Whose law has no force, on a rigid plate that is shaken.
+    progress : callable, optional
+        Called after each impact with the fraction done, in [0, 1].
+    keeps_bounces : bool
+        Are flights and impacts kept, from which histories are read?
+    """
+    drops = []
+    alone = problem.alone()
+    for number, single in enumerate(alone):
+        drop = HardDrop(single)
+        drop.follow(of_several(progress, number, len(alone)))
+        drops.append(drop)
+    return _response_of(problem, drops, keeps_bounces=keeps_bounces)
+
+
+def _response_of(problem: Problem, drops: Sequence[HardDrop], *, keeps_bounces: bool) -> Response:
+    """Return the response of drops that have ended."""
+    ledgers = [drop.entries() for drop in drops]
+    added = np.array([added for _, added in ledgers])
+    entries = {name: np.array([entry[name] for entry, _ in ledgers]) for name in ledgers[0][0]}
+    energy = close_ledger(np.array([drop.energy_in for drop in drops]), added, entries)
+    holds = ledger_holds(energy, added)
+    if problem.oblique is not None:
+        energy |= friction_parts(entries["friction_J"], np.zeros(len(drops)))
+    outcomes = [
+        drop.outcome if held and drop.outcome is not None else Outcome.FAILED
+        for drop, held in zip(drops, holds.tolist(), strict=True)
+    ]
+    none = np.zeros(len(drops))
+    rest = Rest(
+        speed=np.array([drop.rest_speed for drop in drops]),
+        time=np.array([drop.rest_time for drop in drops]),
+        sag=none,
+        stored=none,
+        written_off=none,
+        left=np.full(len(drops), np.nan),
+        lying=(None,) * len(drops),
+    )
+    columns = _columns_of(problem)
+    return Response(
+        problem,
+        stacked_tables([table_of(drop.rows, columns) for drop in drops], columns),
+        energy,
+        tuple(outcomes),
+        np.array([drop.end_time for drop in drops]),
+        rest,
+        BouncesOfSeveral([drop.bounces for drop in drops]) if keeps_bounces else None,
+    )
+
+
+def _columns_of(problem: Problem) -> list[str]:
+    """Return the columns of the table of impacts."""
+    columns = [*IMPACT_COLUMNS, *SHAKEN_IMPACT_COLUMNS]
+    if problem.oblique is not None:
+        columns += [*OBLIQUE_IMPACT_COLUMNS, *CARRIED_IMPACT_COLUMNS]
+    if problem.fluid is not None:
+        columns.append(f"{problem.fluid.key}_lost_J")
+    return columns

@@ -1,0 +1,316 @@
+"""The motion of a drop as the core wrote it, made into parts and laws where these are asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, overload
+
+import numpy as np
+
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.dynamics.contact import Piece
+from vibroimpact.dynamics.core.contact_records import (
+    FLIGHT,
+    LAWS,
+    OF_IMPACT,
+    PARTS,
+    RECOIL,
+    STRETCH,
+    Parts,
+)
+from vibroimpact.dynamics.core.records import MAPS
+from vibroimpact.dynamics.core.surface_friction_records import NUMBERS, SlidingSphere
+from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
+from vibroimpact.dynamics.vibrating.contact_view import ContactView, contact_view
+from vibroimpact.dynamics.vibrating.free_motion import FreePhase
+from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
+from vibroimpact.dynamics.vibrating.local import LocalContact
+from vibroimpact.dynamics.vibrating.radau_eigenbasis import (
+    NODES_PER_STRETCH,
+    RadauEigenbasis,
+    radau_eigenbasis,
+)
+from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
+from vibroimpact.dynamics.vibrating.surface_friction import (
+    NO_FRICTION,
+    SlidingState,
+    SlidingStretch,
+)
+
+_FIRST_PARTS = 128  # of a motion; the room doubles
+_FIRST_LAWS = 32
+
+_OF_LAWS = ("origin", "closing_speed", "compressed")
+"""The arrays of `Parts` with one entry for each law; the others, but for the first, have one for
+each part.
+"""
+
+
+@dataclass
+class ImpactOn:
+    """What an impact meets: the system with its contact, the compliance in series with the law, and
+    the law itself. `sphere`: friction at first touch.
+    """
+
+    system: LinearSystem
+    series: QuasiStatic
+    law: Callable[[], CompliantLaw]
+    sphere: SlidingSphere = NO_FRICTION
+
+
+@dataclass(eq=False)
+class RecordedMotion:
+    """The motion of a drop: flights, and the parts of its impacts.
+
+    `system`: the bodies at the start. `parts`: as the core wrote them. `end`: the state at the end
+    of the last part. `impacts`: what each of them met; it begins with the part and the law of the
+    numbers in `first_parts` and `first_laws`.
+    """
+
+    system: LinearSystem
+    parts: Parts
+    end: State
+    impacts: list[ImpactOn] = field(default_factory=list)
+    first_parts: list[int] = field(default_factory=list)
+    first_laws: list[int] = field(default_factory=list)
+    _motions: dict[int, VibratingStretch | FreePhase] = field(default_factory=dict)
+    _locals: dict[int, LocalContact] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return int(self.parts.written[PARTS])
+
+    def keep_written(self) -> None:
+        """Keep what is written of the parts, without the room behind it."""
+        self.parts = _written(self.parts)
+        self._motions.clear()  # they are read from the room
+
+    # laws
+    # ----------------------------------------------------------------------------------------
+
+    def local(self, law: int) -> LocalContact:
+        """Return the contact under a law, by its number."""
+        if law not in self._locals:
+            self._locals[law] = self._made_local(law)
+        return self._locals[law]
+
+    def _made_local(self, law: int) -> LocalContact:
+        parts = self.parts
+        origin = int(parts.origin[law])
+        compressed = float(parts.compressed[law])
+        if not np.isnan(compressed):
+            return self.local(origin).after_indentation(compressed)
+        number = int(np.searchsorted(self.first_laws, law, side="right")) - 1
+        impact = self.impacts[number]
+        acting = impact.law() if origin == OF_IMPACT else self.local(origin).law
+        return LocalContact(acting, impact.series, float(parts.closing_speed[law]))
+
+    # parts
+    # ---------------------------------------------------------------------------------------
+
+    def parts_of(self, impact: int) -> range:
+        """Return the numbers of the parts of an impact, counted from 0."""
+        first = self.first_parts[impact]
+        end = len(self)
+        if impact + 1 < len(self.first_parts):
+            end = self.first_parts[impact + 1] - 1  # a flight
+        elif int(self.parts.kind[end - 1]) == FLIGHT:
+            end -= 1
+        return range(first, end)
+
+    def phases(self, numbers: range) -> Iterator[tuple[int, int]]:
+        """Yield the stretches under one law: the first, and the one after the last.
+
+        Any other part is alone.
+        """
+        kind = self.parts.kind.tolist()
+        law = self.parts.law.tolist()
+        first = numbers.start
+        for part in range(numbers.start + 1, numbers.stop + 1):
+            ends = part == numbers.stop or not kind[part] == kind[first] == STRETCH
+            if ends or law[part] != law[first]:
+                yield first, part
+                first = part
+
+    def start(self, part: int) -> State:
+        """Return the state at the start of a part."""
+        parts = self.parts
+        return State(parts.displacement[part], parts.velocity[part], parts.local[part])
+
+    def motion(self, part: int) -> VibratingStretch | FreePhase:
+        """Return the motion of a part of an impact."""
+        if part not in self._motions:
+            is_stretch = self.parts.kind[part] == STRETCH
+            self._motions[part] = self._stretch(part) if is_stretch else self._free(part)
+        return self._motions[part]
+
+    def stretch(self, part: int) -> VibratingStretch:
+        """Return the stretch that is a part."""
+        motion = self.motion(part)
+        assert isinstance(motion, VibratingStretch)
+        return motion
+
+    def free(self, part: int) -> FreePhase:
+        """Return the recoil, or the motion between two contacts, that is a part."""
+        motion = self.motion(part)
+        assert isinstance(motion, FreePhase)
+        return motion
+
+    def view(self, part: int) -> ContactView:
+        """Return the system in a part of an impact, reduced to its contact."""
+        return contact_view(self._impact(part).system, (0,))
+
+    def _impact(self, part: int) -> ImpactOn:
+        """Return what the impact meets that a part belongs to."""
+        return self.impacts[int(np.searchsorted(self.first_parts, part, side="right")) - 1]
+
+    def _free(self, part: int) -> FreePhase:
+        free = FreeMotion(self._impact(part).system, self.start(part))
+        recoiling: tuple[tuple[int, LocalContact], ...] = ()
+        if self.parts.kind[part] == RECOIL:
+            recoiling = ((0, self.local(int(self.parts.law[part]))),)
+        return FreePhase(free, float(self.parts.length[part]), recoiling)
+
+    def _stretch(self, part: int) -> VibratingStretch:
+        parts = self.parts
+        local = self.local(int(parts.law[part]))
+        basis = radau_eigenbasis(MAPS[parts.time_map[part]], local.law.root)
+        static = parts.static[part]
+        history = ContactHistory(
+            number=0,
+            local=local,
+            rule=basis.rule,
+            static=static,
+            dissipative=parts.force[part] - static,
+            approach=parts.approach[part],
+            rate=parts.rate[part],
+            closing=parts.closing[part],
+            delta=parts.delta[part],
+            work=float(parts.work[part]),
+            dissipated=float(parts.dissipated[part]),
+            separation_loss=float(parts.separation_loss[part]),
+        )
+        length = float(parts.length[part])
+        stretch = VibratingStretch(
+            view=self.view(part),
+            basis=basis,
+            length=length,
+            start=self.start(part),
+            contacts=(history,),
+            roughness=float(parts.roughness[part]),
+            sliding=self._sliding(part, basis, length),
+        )
+        is_last = part + 1 == len(self)
+        # which it would compute anew
+        stretch.__dict__["end"] = self.end if is_last else self.start(part + 1)
+        return stretch
+
+    def _sliding(self, part: int, basis: RadauEigenbasis, length: float) -> SlidingStretch | None:
+        """Return the friction through a part; None without friction."""
+        sphere = self._impact(part).sphere
+        if not sphere.directions:
+            return None
+        start, end = (SlidingState.of(numbers) for numbers in self.parts.sphere[part])
+        return SlidingStretch(
+            basis.rule,
+            length,
+            sphere,
+            start,
+            end,
+            self.parts.friction[part],
+            self.parts.slip[part],
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class PiecesOfImpact(Sequence[Piece]):
+    """The pieces of the contact of a drop, made where they are asked for.
+
+    `numbers`: of the parts.
+    """
+
+    recorded: RecordedMotion
+    numbers: range
+
+    @cached_property
+    def _pieces(self) -> list[Piece]:
+        parts = self.recorded.parts
+        return [
+            Piece(
+                float(parts.start[part]),
+                self.recorded.motion(part),
+                self.recorded.local(int(parts.law[part])).law,
+            )
+            for part in self.numbers
+        ]
+
+    @overload
+    def __getitem__(self, index: int) -> Piece: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Piece]: ...
+    def __getitem__(self, index: int | slice) -> Piece | list[Piece]:
+        return self._pieces[index]
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+
+def room_for_parts(system: LinearSystem) -> Parts:
+    """Return room for the parts of the motion of a drop."""
+    return _room(system, _FIRST_PARTS, _FIRST_LAWS)
+
+
+def _room(system: LinearSystem, most: int, laws: int) -> Parts:
+    number = system.number
+    elements = len(system.rate)
+    directions = 0 if system.along is None else len(system.along)
+    nodes = NODES_PER_STRETCH
+    return Parts(
+        written=np.zeros(2, dtype=np.int64),
+        kind=np.zeros(most, dtype=np.int64),
+        time_map=np.zeros(most, dtype=np.int64),
+        start=np.empty(most),
+        length=np.empty(most),
+        displacement=np.empty((most, number)),
+        velocity=np.empty((most, number)),
+        local=np.empty((most, elements)),
+        law=np.zeros(most, dtype=np.int64),
+        static=np.empty((most, nodes)),
+        force=np.empty((most, nodes)),
+        approach=np.empty((most, nodes + 1)),
+        rate=np.empty((most, nodes + 1)),
+        closing=np.empty((most, nodes + 1)),
+        delta=np.empty((most, nodes + 1)),
+        work=np.empty(most),
+        dissipated=np.empty(most),
+        roughness=np.empty(most),
+        separation_loss=np.empty(most),
+        indentation=np.empty((most, nodes + 1)),
+        friction=np.empty((most, directions, nodes)),
+        slip=np.empty((most, directions, nodes)),
+        sphere=np.empty((most, 2, NUMBERS if directions else 0)),
+        origin=np.zeros(laws, dtype=np.int64),
+        closing_speed=np.empty(laws),
+        compressed=np.empty(laws),
+    )
+
+
+def with_more_room(parts: Parts) -> Parts:
+    """Return the parts of a motion with room for twice as many parts and laws."""
+    arrays: dict[str, Any] = {"written": parts.written}
+    for name, values in parts._asdict().items():
+        if name != "written":
+            arrays[name] = np.concatenate([values, np.empty_like(values)])
+    return Parts(**arrays)
+
+
+def _written(parts: Parts) -> Parts:
+    """Return copies of what is written of the parts of a motion, without the room behind it."""
+    arrays: dict[str, Any] = {"written": parts.written.copy()}
+    for name, values in parts._asdict().items():
+        if name != "written":
+            count = parts.written[LAWS if name in _OF_LAWS else PARTS]
+            arrays[name] = values[:count].copy()
+    return Parts(**arrays)
