@@ -234,6 +234,9 @@ def _register_intrinsics() -> None:
         of_address = getattr(intrinsics, f"{kind}_of_address")
         _REPLACED[at_address] = getattr(of_address, "_defn", at_address)
         overload(at_address)(_inserting(of_address))
+    lent = function_values.lent
+    _REPLACED[lent] = getattr(intrinsics.lent_value, "_defn", lent)
+    overload(lent)(_lending)
     multiply = function_values.multiply_row
     _REPLACED[multiply] = getattr(intrinsics.product_of_rows, "_defn", multiply)
     overload(multiply)(_multiplying)
@@ -244,6 +247,10 @@ def _inserting(of_address: Any) -> Callable[..., Any]:
         return lambda address: of_address(address)
 
     return replacement
+
+
+def _lending(value):  # type: ignore[no-untyped-def]
+    return lambda value: intrinsics.lent_value(value)
 
 
 def _multiplying(room, values, matrices, matrix, width, columns, product):  # type: ignore[no-untyped-def]

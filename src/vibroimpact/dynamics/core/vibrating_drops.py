@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.compiled import compiled, levels_at
+from vibroimpact.compiled import compiled, lent, levels_at
 from vibroimpact.dynamics.core.contact_records import FLIGHT, LAWS, OF_IMPACT, Bodies
 from vibroimpact.dynamics.core.drop_records import (
     ACCELERATION,
@@ -129,6 +129,10 @@ def follow_vibrating_drop(
     pause : int
         Number of impacts after which it is not followed any further.
     """
+    # held by the caller
+    bases = lent(bases)
+    bodies = lent(bodies)
+    drop = lent(drop)
     system = bodies.system
     while True:
         if now.phase == IN_FLIGHT:
