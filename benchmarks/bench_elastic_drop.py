@@ -15,8 +15,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.dynamics.sensors.recording import Signal
-from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.dynamics.vibrating.drop_system import system_of
 
 REPEATS = 3

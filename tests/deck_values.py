@@ -23,8 +23,8 @@ from oracles.adams_commands import read_commands
 from oracles.adams_dataset import read_dataset, read_solver_commands
 from oracles.lammps_lines import commands
 from vibroimpact.contact.laws.hertz import Hertz
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.dynamics.sensors.recording import Signal
-from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat
 

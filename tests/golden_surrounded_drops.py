@@ -23,8 +23,8 @@ from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.contact.registry import contact_laws
-from vibroimpact.dynamics.air import Air
-from vibroimpact.dynamics.liquid import Liquid
+from vibroimpact.dynamics.fluids.air import Air
+from vibroimpact.dynamics.fluids.liquid import Liquid
 from vibroimpact.structures.modal_model import ModalBasis
 
 Made = Callable[[], vi.Problem]

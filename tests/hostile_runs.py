@@ -23,9 +23,9 @@ from vibroimpact.bodies.body import Body
 from vibroimpact.contact.friction.laws.coulomb import Coulomb
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.contact.registry import find_contact_law
-from vibroimpact.dynamics.oblique.statement import Oblique
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.statement.oblique import Oblique
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.tabulate import tabulate
 from vibroimpact.errors import VibroimpactError
 from vibroimpact.structures.modal_model import ModalBasis

@@ -12,8 +12,8 @@ import numpy as np
 
 import vibroimpact as vi
 from vibroimpact.cases.rigid.rigid_problem import rigid_problem
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.identification.plate import Plate, compliance_error, plate_of, with_compliance
 from vibroimpact.identification.setup import Setup, SetupErrors
 from vibroimpact.signals.record import Record

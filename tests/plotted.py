@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.columns import ALL_HISTORY_COLUMNS
+from vibroimpact.dynamics.motion.columns import ALL_HISTORY_COLUMNS
 from vibroimpact.results.result import Result
 
 if TYPE_CHECKING:

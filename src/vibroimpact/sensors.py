@@ -5,14 +5,14 @@
 'Geophone'
 """
 
-from vibroimpact.dynamics.sensors.electronics import Amplifier, Converter
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.instruments.electronics import Amplifier, Converter
 from vibroimpact.dynamics.sensors.instruments.force_sensor import ForceSensor
 from vibroimpact.dynamics.sensors.instruments.geophone import Geophone
 from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
 from vibroimpact.dynamics.sensors.recording import Signal
-from vibroimpact.dynamics.sensors.sensor import Sensor
 
 __all__ = [
     "Accelerometer",

@@ -17,7 +17,7 @@ from support import plain_case
 from vibroimpact.cases.limits.limit import limits
 from vibroimpact.cases.validity import modes_left_out
 from vibroimpact.cases.validity.finite_sphere import force_lacking
-from vibroimpact.dynamics.energy import CLOSURE_LIMIT, CLOSURE_USUAL
+from vibroimpact.dynamics.motion.energy import CLOSURE_LIMIT, CLOSURE_USUAL
 
 README = "README.md"
 INDEX = "docs/index.md"

@@ -23,7 +23,7 @@ from vibroimpact.cases.fields import elastic_body, quantities, size_limits
 from vibroimpact.cases.limits.limit import limits
 from vibroimpact.cases.rigid.rigid_problem import touch_speed
 from vibroimpact.cli import main
-from vibroimpact.dynamics.problem import MOST_IMPACTS
+from vibroimpact.dynamics.statement.problem import MOST_IMPACTS
 from vibroimpact.materials import find_material
 from vibroimpact.structures.recipe import Reduction
 from vibroimpact.units.reading import to_si

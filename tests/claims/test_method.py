@@ -11,8 +11,8 @@ from stated_numbers import says
 from support import plain_case
 from vibroimpact.cases.rigid.rigid_problem import touch_speed
 from vibroimpact.contact.laws.hertz import Hertz
-from vibroimpact.dynamics import air, liquid
 from vibroimpact.dynamics.core import phase_contact
+from vibroimpact.dynamics.fluids import air, liquid
 from vibroimpact.dynamics.rigid import line_contact
 from vibroimpact.dynamics.vibrating import drop_at_start
 

@@ -14,7 +14,7 @@ from PIL import Image
 import vibroimpact as vi
 from stated_numbers import ROOT, says
 from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE
-from vibroimpact.dynamics.energy import CLOSURE_LIMIT
+from vibroimpact.dynamics.motion.energy import CLOSURE_LIMIT
 from vibroimpact.files.hdf5 import FORMAT
 from vibroimpact.results import deflection, fine_history, surface_grid
 from vibroimpact.results.csv_files import MOST_CSV_SAMPLES

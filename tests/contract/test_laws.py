@@ -16,7 +16,7 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.registry import contact_laws
 from vibroimpact.contact.static import static_indentation
-from vibroimpact.dynamics.columns import LEDGER
+from vibroimpact.dynamics.motion.columns import LEDGER
 from vibroimpact.dynamics.restitution import integrated_restitution
 
 LAWS = list(contact_laws().values())

@@ -21,8 +21,8 @@ import pytest
 import hostile_runs
 import vibroimpact as vi
 from support import plain_case
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.dynamics.sensors.recording import Signal
-from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.exporting.load_drop import load_drop
 from vibroimpact.paper.report.folder import reproduce_paper
 from vibroimpact.paper.report.reproduction import load_reproduction

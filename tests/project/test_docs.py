@@ -28,7 +28,7 @@ from identifying import an_impact, records_of
 from thin_plate_responses import by_pyuff
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cli import main
-from vibroimpact.dynamics.columns import IMPACT_COLUMNS
+from vibroimpact.dynamics.motion.columns import IMPACT_COLUMNS
 from vibroimpact.report import console
 from vibroimpact.report.console import TerminalConsole
 

@@ -50,9 +50,6 @@ LAYERS = [
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 
 
-# rooms whose folders import each other; in all others they do not
-ENTWINED = {"dynamics"}
-
 # a room that people work in may have a section of the case, which is part of the case file and lies
 # beside the work that it asks for
 SECTIONS = {"vibroimpact.calibration.observed.section", "vibroimpact.studies.planning.section"}
@@ -125,7 +122,7 @@ def test_modules_do_not_import_in_circles() -> None:
 
 
 def test_folders_do_not_import_in_circles() -> None:
-    """Of one room neither, but for those in `ENTWINED`, of which each is still one."""
+    """Of one room neither."""
     folders = {path.parent for path in PACKAGE.rglob("*.py")} - {PACKAGE}
     below: dict[Path, set[Path]] = {folder: set() for folder in folders}
     for path in PACKAGE.rglob("*.py"):
@@ -143,7 +140,7 @@ def test_folders_do_not_import_in_circles() -> None:
         for lower in reached[folder]
         if folder in reached[lower]
     }
-    assert circles == {(name, name) for name in ENTWINED}
+    assert not circles
 
 
 def reachable(start: Path, below: dict[Path, set[Path]]) -> set[Path]:

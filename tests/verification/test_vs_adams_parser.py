@@ -26,7 +26,7 @@ from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.speed_function import SpeedFunction
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.formats import adams_solver, adams_view

@@ -36,7 +36,7 @@ from bounces_in_oil import (
 )
 from oracles.bouncing_in_air import Medium, bounces, clift_gauvin
 from vibroimpact.bodies.rigid_bodies import rigid_plate, rigid_sphere
-from vibroimpact.dynamics.liquid import CRITICAL_STOKES, restitution_kept
+from vibroimpact.dynamics.fluids.liquid import CRITICAL_STOKES, restitution_kept
 
 AGAINST = Against(
     "Gondret et al., measured rebounds of a sphere in silicone oil",

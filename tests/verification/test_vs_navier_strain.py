@@ -13,8 +13,8 @@ import vibroimpact as vi
 from agreement import Against, Agrees
 from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, rms, sampled
 from support import one_in
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
-from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.structures.recipe import (
     PlateOfPlates,
     PlateOfSolids,

@@ -21,9 +21,9 @@ from vibroimpact.dynamics.core.lying_sphere import (
     start_of,
 )
 from vibroimpact.dynamics.core.sphere_records import RubbedSphere, SphereState
+from vibroimpact.dynamics.motion.along import Sphere, State
 from vibroimpact.dynamics.oblique import lying
 from vibroimpact.dynamics.oblique.lying import lie
-from vibroimpact.dynamics.oblique.state import Sphere, State
 
 AGAINST = Against(
     "sliding and rolling of rigid spheres, closed form",

@@ -19,7 +19,7 @@ from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH, kernel
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
-from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 
 AGAINST = Against(
     "SciPy filters on oversampled signals",

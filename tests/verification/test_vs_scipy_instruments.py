@@ -17,10 +17,10 @@ from support import one_in
 from vibrating import STIFFNESS, drop_on, modes_of, random_modes
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH, kernel
-from vibroimpact.dynamics.sensors.electronics import Amplifier, Converter
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.instruments.electronics import Amplifier, Converter
 from vibroimpact.dynamics.sensors.instruments.geophone import Geophone
-from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.structures.modal_model import ModalBasis
 
 AGAINST = Against(

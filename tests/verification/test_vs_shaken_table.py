@@ -26,7 +26,7 @@ from oracles.shaken_integration import ShakenDeck
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
 from vibroimpact.contact.laws.newton import Newton
-from vibroimpact.dynamics.columns import ALL_HISTORY_COLUMNS
+from vibroimpact.dynamics.motion.columns import ALL_HISTORY_COLUMNS
 from vibroimpact.structures.modal_model import ModalBasis
 
 AGAINST = Against(

@@ -14,8 +14,8 @@ import vibroimpact as vi
 from agreement import Against, Agrees
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.core.twisting import Twisting, moment_share
+from vibroimpact.dynamics.motion.along import Sphere, State
 from vibroimpact.dynamics.oblique.lying import lie
-from vibroimpact.dynamics.oblique.state import Sphere, State
 from vibroimpact.structures.modal_model import ModalBasis
 
 AGAINST = Against(

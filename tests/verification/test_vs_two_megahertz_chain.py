@@ -18,7 +18,7 @@ from agreement import Against, Agrees
 from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, rms, sampled, seismic
 from oracles.three_dimensional_plate import Elastic, thickness_modes
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
-from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 
 AGAINST = Against(
     "measuring chain sampled at 2 MHz",

@@ -16,7 +16,7 @@ import pytest
 import vibroimpact as vi
 from agreement import Against, Agrees
 from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, sampled, seismic
-from vibroimpact.dynamics.sensors.sensor import Accelerometer, Sensor
+from vibroimpact.dynamics.sensors.instruments.sensor import Accelerometer, Sensor
 
 AGAINST = Against(
     "measuring chain sampled at 2 MHz, shaken supports",

@@ -7,9 +7,9 @@ from dataclasses import replace
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
-from vibroimpact.dynamics.columns import MOTION_COLUMNS
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.motion.columns import MOTION_COLUMNS
 from vibroimpact.dynamics.response import Response
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.results.deflection import deflection_of
 from vibroimpact.results.peaks import FREQUENCIES, MAXIMA, frequencies_of, peaks_of
 from vibroimpact.results.result import Result, bare_result, result_of

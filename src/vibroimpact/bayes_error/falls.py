@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.bodies.ball import ball_volume, mean_density
 from vibroimpact.cases.case import Case
-from vibroimpact.dynamics.problem import STANDARD_GRAVITY
+from vibroimpact.dynamics.statement.problem import STANDARD_GRAVITY
 from vibroimpact.errors import InputError
 from vibroimpact.studies.computation.compute_points import compute_points
 from vibroimpact.studies.computation.study import Study

@@ -35,8 +35,8 @@ from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.contact.friction.registry import friction_laws
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import find_contact_law
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.errors import InputError, listed
 from vibroimpact.results.result import result_of
 

@@ -26,7 +26,7 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.contact import ContactSection
 from vibroimpact.cases.rigid.rigid_problem import by_speed_of, contact_laws_of, touch_speed
 from vibroimpact.contact.laws.newton import Newton
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.errors import InputError
 
 

@@ -30,11 +30,11 @@ from vibroimpact.cases.rigid.rigid_problem import (
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, is_conservative
 from vibroimpact.contact.speed_function import held
-from vibroimpact.dynamics.air import check_thin
-from vibroimpact.dynamics.liquid import check_sinks
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.fluids.air import check_thin
+from vibroimpact.dynamics.fluids.liquid import check_sinks
 from vibroimpact.dynamics.sensors.instruments.instrument import SUBJECTS_AT_REST
-from vibroimpact.dynamics.sensors.registry import instruments
+from vibroimpact.dynamics.sensors.instruments.registry import instruments
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.errors import InputError
 from vibroimpact.resolved_case import ResolvedCase
 

@@ -8,7 +8,7 @@ from typing import Any
 from vibroimpact.cases.build import problem_of
 from vibroimpact.cases.fields.contact import contact_schema
 from vibroimpact.cases.sections.schema import CaseTable
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 
 
 class Case(CaseTable):

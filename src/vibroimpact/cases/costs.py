@@ -19,8 +19,8 @@ from vibroimpact.cases.rigid.rigid_problem import (
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.history_grid import MOST_POINTS
-from vibroimpact.dynamics.problem import MOST_IMPACTS
 from vibroimpact.dynamics.restitution import achieved_restitution
+from vibroimpact.dynamics.statement.problem import MOST_IMPACTS
 from vibroimpact.structures.finite_elements.free_memory import check_memory
 
 if TYPE_CHECKING:

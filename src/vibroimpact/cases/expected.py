@@ -16,7 +16,7 @@ from vibroimpact.cases.rigid.rigid_problem import contact_laws_of, in_liquid, to
 from vibroimpact.compiled import interpreted
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.power_law import HERTZ_TIME
-from vibroimpact.dynamics.impact_conditions import impact_conditions_of
+from vibroimpact.dynamics.motion.impact_conditions import impact_conditions_of
 from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
 from vibroimpact.errors import InputError
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.cases.limits.limit import in_kilohertz, two_digits
-from vibroimpact.dynamics.sensors.electronics import Converter
+from vibroimpact.dynamics.sensors.instruments.electronics import Converter
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.units.display import text

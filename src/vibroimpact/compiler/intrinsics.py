@@ -6,6 +6,8 @@ from typing import Any
 
 from llvmlite import ir
 from numba.core import cgutils
+from numba.core import types as numba_types
+from numba.core.types.containers import BaseTuple
 from numba.extending import intrinsic
 
 from vibroimpact.compiler import types
@@ -133,12 +135,12 @@ def lent_value(typing_context: Any, value: Any) -> Any:
 
 def _lent(context: Any, builder: Any, kind: Any, value: Any) -> Any:
     """Return a value of a type without the references that its arrays hold."""
-    if isinstance(kind, types.types.Array):
+    if isinstance(kind, numba_types.Array):
         array = context.make_array(kind)(context, builder, value)
         array.meminfo = cgutils.get_null_value(array.meminfo.type)
         array.parent = cgutils.get_null_value(array.parent.type)
         return array._getvalue()
-    if isinstance(kind, types.types.BaseTuple):
+    if isinstance(kind, BaseTuple):
         for number, member_kind in enumerate(kind):
             member = builder.extract_value(value, number)
             member = _lent(context, builder, member_kind, member)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.dynamics.flight_in_fluid import first_flights
-from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.run_rules import start_of
+from vibroimpact.dynamics.motion.flight_in_fluid import first_flights
+from vibroimpact.dynamics.motion.run_rules import start_of
+from vibroimpact.dynamics.statement.problem import Problem
 
 
 def first_touch(problem: Problem) -> float:

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.bounce import Bounce
-from vibroimpact.dynamics.flight_in_fluid import FluidFlight
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.motion.bounce import Bounce
+from vibroimpact.dynamics.motion.flight_in_fluid import FluidFlight
+from vibroimpact.dynamics.statement.problem import Problem
 
 _VELOCITIES = ("velocity_m_s", "velocity_x_m_s", "velocity_y_m_s")
 MOTION = ("velocity_m_s", "kinetic_J")

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
+from vibroimpact.dynamics.statement.problem import Problem
 
 
 def follow(
@@ -30,11 +30,13 @@ def follow(
         if problem.vibrates:
             from vibroimpact.dynamics.vibrating.drops import follow as follow_vibrating
 
-            return follow_vibrating(problem, progress, keeps_bounces=keeps_bounces)
-        if problem.shaken:
+            ended = follow_vibrating(problem, progress, keeps_bounces=keeps_bounces)
+        elif problem.shaken:
             from vibroimpact.dynamics.shaken.hard_drops import follow as follow_hard
 
-            return follow_hard(problem, progress, keeps_bounces=keeps_bounces)
-        from vibroimpact.dynamics.rigid.drops import follow as follow_rigid
+            ended = follow_hard(problem, progress, keeps_bounces=keeps_bounces)
+        else:
+            from vibroimpact.dynamics.rigid.drops import follow as follow_rigid
 
-        return follow_rigid(problem, progress, keeps_bounces=keeps_bounces)
+            ended = follow_rigid(problem, progress, keeps_bounces=keeps_bounces)
+    return Response(**vars(ended))

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.errors import ComputationError, InputError
 
 _WITHIN = 1e-9  # relative, of force and speed

@@ -6,13 +6,15 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from numbers import Integral
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.dynamics.bounce import Bounce, BouncesOfDrops
-from vibroimpact.dynamics.columns import (
+from vibroimpact.dynamics.fluid_history import MOTION, fluid_history
+from vibroimpact.dynamics.history_grid import points_kept, thinned
+from vibroimpact.dynamics.motion.bounce import Bounce, BouncesOfDrops
+from vibroimpact.dynamics.motion.columns import (
     FLUID_HISTORY_COLUMNS,
     HISTORY_COLUMNS,
     OBLIQUE_HISTORY_COLUMNS,
@@ -20,34 +22,32 @@ from vibroimpact.dynamics.columns import (
     VIBRATION_HISTORY_COLUMNS,
     meanings,
 )
-from vibroimpact.dynamics.energy import why_failed
-from vibroimpact.dynamics.fluid_history import MOTION, fluid_history
-from vibroimpact.dynamics.history_grid import points_kept, thinned
+from vibroimpact.dynamics.motion.ended_run import EndedRun
+from vibroimpact.dynamics.motion.energy import why_failed
+from vibroimpact.dynamics.motion.ride import RideSegment
 from vibroimpact.dynamics.oblique.history import oblique_history
-from vibroimpact.dynamics.outcome import Outcome
-from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.rest import Rest
 from vibroimpact.dynamics.rigid.history import rigid_history
 from vibroimpact.dynamics.rigid.segments import RestSegment
 from vibroimpact.dynamics.rigid.timeline import Timeline, end_of, timeline_of
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor, sample_count
 from vibroimpact.dynamics.sensors.recording import Signal
-from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
-from vibroimpact.dynamics.shaken.ride import RideSegment
-from vibroimpact.dynamics.shaken.steady import steady_modes
-from vibroimpact.dynamics.status import Ended, end_in_words, status_of
+from vibroimpact.dynamics.statement.outcome import Outcome
+from vibroimpact.dynamics.statement.steady import steady_modes
+from vibroimpact.dynamics.status import end_in_words, status_of
 from vibroimpact.dynamics.truncation import truncation_estimates
 from vibroimpact.errors import InputError, choices
 from vibroimpact.report.html_report import html_summary
 from vibroimpact.report.reported import Reported
 
 if TYPE_CHECKING:
+    from vibroimpact.dynamics.vibrating.recorded_drop import VibratingBounce
     from vibroimpact.dynamics.vibrating.segments import VibratingSegment
 
 # what vibrates is imported in the methods: a drop of rigid bodies does not load it
 
 
 @dataclass(frozen=True, eq=False)
-class Response(Reported, reported_in="vibroimpact.runs.response_report"):
+class Response(Reported, EndedRun, reported_in="vibroimpact.runs.response_report"):
     """Response of one drop, or of a batch.
 
     Of one drop with histories it has the report of its `Result`, with charts by the same names.
@@ -86,14 +86,6 @@ class Response(Reported, reported_in="vibroimpact.runs.response_report"):
     >>> response.at([0.0])["position_m"].tolist()
     [4.0]
     """
-
-    problem: Problem
-    impacts: dict[str, Floats]
-    energy: dict[str, Floats]
-    outcomes: tuple[Outcome, ...]
-    end_time: Floats
-    rest: Rest
-    bounces: Sequence[Bounce] | BouncesOfDrops | None
 
     def __len__(self) -> int:
         """Return the number of drops."""
@@ -170,9 +162,7 @@ class Response(Reported, reported_in="vibroimpact.runs.response_report"):
         For a batch, how many drops ended by each rule, and the most that is left in vibration where
         they rest or ride.
         """
-        return status_of(
-            Ended(self.problem, self.impacts, self.energy, self.outcomes, self.end_time, self.rest)
-        )
+        return status_of(self)
 
     def at(self, times: Any, columns: Collection[str] | None = None) -> dict[str, Floats]:
         """Return the motion, force and energies of one drop at given times.
@@ -404,7 +394,8 @@ class Response(Reported, reported_in="vibroimpact.runs.response_report"):
         if self.problem.vibrates:
             from vibroimpact.dynamics.vibrating.segments import vibrating_timeline
 
-            return vibrating_timeline(self._bounces, self.rest.lying[0], end)
+            bounces = cast("Sequence[VibratingBounce]", self._bounces)
+            return vibrating_timeline(bounces, self.rest.lying[0], end)
         rest: RestSegment | RideSegment | None = None
         if self.outcomes[0].at_rest:
             begin = end_of(self._bounces[-1])

@@ -15,9 +15,9 @@ from vibroimpact.arrays import Array
 from vibroimpact.compiled import interpreted
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.roots import solve_monotonic
-from vibroimpact.dynamics.impact_conditions import impact_conditions_of
+from vibroimpact.dynamics.motion.impact_conditions import impact_conditions_of
 from vibroimpact.dynamics.rigid.line_contact import FEW, release_rates
-from vibroimpact.dynamics.tolerance import DEFAULT_TOLERANCE, check_tolerance
+from vibroimpact.dynamics.statement.tolerance import DEFAULT_TOLERANCE, check_tolerance
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.ranges import Range
 

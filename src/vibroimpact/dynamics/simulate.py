@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from vibroimpact.dynamics.follow import follow
-from vibroimpact.dynamics.outcome import Outcome
-from vibroimpact.dynamics.problem import StatesProblem
 from vibroimpact.dynamics.response import Response
+from vibroimpact.dynamics.statement.outcome import Outcome
+from vibroimpact.dynamics.statement.problem import StatesProblem
 from vibroimpact.errors import ComputationError, InputError
 
 
@@ -43,7 +43,7 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     >>> from vibroimpact.bodies.body import Body
     >>> from vibroimpact.bodies.rigid_bodies import rigid_plate
     >>> from vibroimpact.contact.laws.newton import Newton
-    >>> from vibroimpact.dynamics.problem import Problem
+    >>> from vibroimpact.dynamics.statement.problem import Problem
     >>> problem = Problem(
     ...     sphere=Body(mass=1.0, contact_offset=0.1),
     ...     plate=rigid_plate(),

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Bools, Floats
-from vibroimpact.dynamics.energy import CLOSURE_LIMIT
+from vibroimpact.dynamics.motion.energy import CLOSURE_LIMIT
 from vibroimpact.dynamics.status import end_in_words
 from vibroimpact.dynamics.system import System
 from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition

@@ -2,37 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
 from decimal import ROUND_FLOOR, Context, Decimal
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import InstantaneousLaw
 from vibroimpact.dynamics.change_by_impact import change_by_impact
-from vibroimpact.dynamics.energy import why_failed
-from vibroimpact.dynamics.outcome import Outcome
-from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.rest import Rest
+from vibroimpact.dynamics.motion.ended_run import EndedRun
+from vibroimpact.dynamics.motion.energy import why_failed
+from vibroimpact.dynamics.statement.outcome import Outcome
 from vibroimpact.units.display import certain, certain_figures
 
 _DIGITS = Context(prec=6, rounding=ROUND_FLOOR)
 
 
-@dataclass(frozen=True)
-class Ended:
-    """The part of a response that concerns the end of the run, under the same names."""
-
-    problem: Problem
-    impacts: Mapping[str, Floats]
-    energy: Mapping[str, Floats]
-    outcomes: tuple[Outcome, ...]
-    end_time: Floats
-    rest: Rest
-
-
-def status_of(run: Ended) -> str:
+def status_of(run: EndedRun) -> str:
     """Return the reason and time of the end of a run, in certain digits.
 
     For a batch it is the number of drops that each rule ended.
@@ -92,7 +76,7 @@ def status_of(run: Ended) -> str:
     return f"At rest {after}: {_at_rest(run)}{_moves_on(run)}"
 
 
-def _ended_by(run: Ended, outcome: Outcome) -> str:
+def _ended_by(run: EndedRun, outcome: Outcome) -> str:
     """Return the number of drops of a batch that a rule ended, and the energy left in vibration."""
     ended = np.array([run_outcome is outcome for run_outcome in run.outcomes])
     energy = run.rest.left[ended & np.isfinite(run.rest.left)]
@@ -103,7 +87,7 @@ def _ended_by(run: Ended, outcome: Outcome) -> str:
     return f"{counted} ({riding}at most {energy.max():.3g} J left in vibration)"
 
 
-def _top_or_touch(run: Ended) -> str:
+def _top_or_touch(run: EndedRun) -> str:
     """Return where a run stops after its last impact.
 
     It is the top of the rebound, or where a plate that is shaken touches sooner.
@@ -121,7 +105,7 @@ def _top_or_touch(run: Ended) -> str:
     return "at the next touch, before the top of the last rebound"
 
 
-def _riding(run: Ended) -> str:
+def _riding(run: EndedRun) -> str:
     """Return the sentence on a sphere that is still in contact and not at rest."""
     if run.problem.shaken:
         return "the sphere rides on the plate, which is shaken"
@@ -131,7 +115,7 @@ def _riding(run: Ended) -> str:
     )
 
 
-def _moves_on(run: Ended) -> str:
+def _moves_on(run: EndedRun) -> str:
     """Return the sentence on a sphere that bounces no more and moves on along the plate.
 
     It is empty if the sphere does not.
@@ -150,7 +134,7 @@ def _moves_on(run: Ended) -> str:
 _STANDING = 1e-9  # of the first approach speed
 
 
-def _at_rest(run: Ended) -> str:
+def _at_rest(run: EndedRun) -> str:
     """Return the rule by which the sphere is at rest, and the energy left in what carries it."""
     time = float(run.rest.time[0])
     energy = float(run.rest.left[0])
@@ -186,7 +170,7 @@ def _at_rest(run: Ended) -> str:
     )
 
 
-def _time(run: Ended, time: float, significant: int) -> str:
+def _time(run: EndedRun, time: float, significant: int) -> str:
     """Return an end time in the given number of digits, or in fewer that are certain.
 
     Each flight is as certain as the impact before it.
@@ -200,7 +184,7 @@ def _time(run: Ended, time: float, significant: int) -> str:
     return _digits(time, change_of_time / time, significant)
 
 
-def _shown(run: Ended, value: float, significant: int) -> str:
+def _shown(run: EndedRun, value: float, significant: int) -> str:
     """Return a quantity of the last impact in some digits, or in fewer that are certain."""
     change = change_by_impact(run.impacts, run.problem.tolerance)
     return _digits(value, float(change[-1]) if len(change) else 0.0, significant)

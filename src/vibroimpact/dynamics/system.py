@@ -18,7 +18,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.dynamics.tolerance import DEFAULT_TOLERANCE, check_tolerance
+from vibroimpact.dynamics.statement.tolerance import DEFAULT_TOLERANCE, check_tolerance
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.errors import InputError, did_you_mean
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.follow import follow
-from vibroimpact.dynamics.problem import Problem, StatesProblem
+from vibroimpact.dynamics.motion.rest import Rest
 from vibroimpact.dynamics.response import Response
-from vibroimpact.dynamics.rest import Rest
+from vibroimpact.dynamics.statement.problem import Problem, StatesProblem
 from vibroimpact.errors import InputError
 
 BLOCK = 2000

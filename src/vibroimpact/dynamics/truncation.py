@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.power_law import HERTZ_TIME
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 
 if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalBasis

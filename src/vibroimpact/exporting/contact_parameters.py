@@ -18,9 +18,9 @@ from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.adams_poisson import AdamsPoisson
 from vibroimpact.contact.power_law import PowerLaw, SphereLaw
 from vibroimpact.contact.speed_function import SpeedFunction
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.restitution import law_achieving
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.ranges import Range

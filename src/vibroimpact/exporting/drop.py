@@ -10,10 +10,10 @@ from vibroimpact.bodies.ball import SOLID
 from vibroimpact.bodies.body import Body
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.speed_function import SpeedFunction
-from vibroimpact.dynamics.oblique.statement import Oblique
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.recording import Signal
-from vibroimpact.dynamics.shaken.statement import PlateMotion
+from vibroimpact.dynamics.statement.oblique import Oblique
+from vibroimpact.dynamics.statement.plate_motion import PlateMotion
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.materials import Material
 
 _SAME = 1e-9  # relative difference of moments of inertia that is rounding

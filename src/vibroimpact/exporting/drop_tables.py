@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.columns import Column, history_columns, impact_columns
+from vibroimpact.dynamics.motion.columns import Column, history_columns, impact_columns
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.files.plain_names import one_line, plain_names

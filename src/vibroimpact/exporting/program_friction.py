@@ -15,8 +15,8 @@ from vibroimpact.contact.friction.law import CompliantFriction, FrictionLaw
 from vibroimpact.contact.friction.registry import find_friction_law
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.pair import hertz_stiffness
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import approach_speeds, laws_of_impacts
 from vibroimpact.exporting.drop import Drop

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.dynamics.columns import OBLIQUE_HISTORY_COLUMNS
+from vibroimpact.dynamics.motion.columns import OBLIQUE_HISTORY_COLUMNS
 
 
 def motion_at(history: Mapping[str, Floats], times: Floats) -> dict[str, Floats]:

@@ -10,9 +10,9 @@ import numpy as np
 
 from vibroimpact.calibration.fit.single_impacts import first_approach_speed
 from vibroimpact.contact.speed_function import SpeedFunction
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import law_at, laws_at_impacts
 from vibroimpact.exporting.drop import Drop

@@ -12,9 +12,9 @@ from vibroimpact.arrays import Floats
 from vibroimpact.cases.rigid.pair import resized
 from vibroimpact.cases.rigid.rigid_problem import rigid_problem
 from vibroimpact.cases.sections.schema import CaseTable
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate_together
+from vibroimpact.dynamics.statement.problem import Problem
 
 _NODES = np.polynomial.legendre.leggauss(96)
 """Nodes on [-1, 1] and weights of the quadrature of a force."""

@@ -13,7 +13,7 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.reader import load_case
 from vibroimpact.cases.sections.schema import CaseTable
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
-from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.quoting import quoted
 from vibroimpact.signals.baseline import without_baseline

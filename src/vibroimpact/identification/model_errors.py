@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.place_responses import sampled_responses
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.identification.plate import Plate, compliances_of, shapes_of
 
 

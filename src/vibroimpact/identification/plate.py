@@ -17,13 +17,13 @@ from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
 from vibroimpact.cases.rigid.oblique import oblique_keys
 from vibroimpact.cases.sections.schema import CaseTable
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.dynamics.sensors.place_responses import (
     PlaceResponses,
     sensor_shapes,
     unit_responses,
 )
-from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.drop_system import bases_of_plate
 from vibroimpact.errors import InputError
 from vibroimpact.identification.setup import Setup, SetupErrors, stretched, with_resonance

@@ -28,8 +28,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.rigid.pair import contact_pair, sphere_density
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.place_responses import PlaceResponses, sampled_responses
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.identification.contact import ContactForce, Spheres, contact_forces_of
 from vibroimpact.identification.measured import Measured
 from vibroimpact.identification.model_errors import model_error_signals

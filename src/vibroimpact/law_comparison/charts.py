@@ -12,7 +12,7 @@ from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Label, Level, Line, Mark, Points
 from vibroimpact.charts.palette import series
-from vibroimpact.dynamics.columns import HISTORY_COLUMNS
+from vibroimpact.dynamics.motion.columns import HISTORY_COLUMNS
 from vibroimpact.law_comparison.comparison import Comparison
 from vibroimpact.results.result import Result
 from vibroimpact.runs.below import level_below

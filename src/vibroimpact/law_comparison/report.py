@@ -10,7 +10,7 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.contact.law import ContactLaw
-from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS, impact_columns
+from vibroimpact.dynamics.motion.columns import ALL_IMPACT_COLUMNS, impact_columns
 from vibroimpact.files.result_folder import write_case
 from vibroimpact.law_comparison.charts import comparison_charts
 from vibroimpact.law_comparison.comparison import Comparison

@@ -21,9 +21,9 @@ from vibroimpact.charts.palette import series
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import find_contact_law
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import write_file
 from vibroimpact.files.recover import recover

@@ -11,7 +11,7 @@ import numpy as np
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.reader import load_case
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.paper.derived import fall_beyond_touch, mesh_mass
 from vibroimpact.paper.implicit_euler import PEAKS
 from vibroimpact.paper.measures import (

@@ -13,8 +13,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.paper.derived import function_at, parabola, printed_dampings, printed_function
 from vibroimpact.paper.printed import PrintedValue, printed
 from vibroimpact.paper.runs import DAMPINGS, IMPACTS, Runs, with_law

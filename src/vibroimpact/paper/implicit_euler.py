@@ -27,7 +27,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.calibration.fit.single_impacts import first_approach_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.roots import find_root
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.drop_system import centre_of, slices_of, system_of
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.errors import ComputationError, InputError

@@ -10,9 +10,9 @@ from vibroimpact.arrays import Array, Floats
 from vibroimpact.calibration.calibrate_case import calibrate_case, load_calibration
 from vibroimpact.calibration.contact_law.calibration import Calibration
 from vibroimpact.cases.reader import load_case
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.results.fine_history import fine_history
 
 TREATMENTS = ("consistent", "superposed", "identified")

@@ -12,8 +12,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.reader import case_of, load_table
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.paper.implicit_euler import ENERGY_SHARES, PEAKS, unresolved_impact
 from vibroimpact.paper.printed import printed
 from vibroimpact.paper.runs import Runs

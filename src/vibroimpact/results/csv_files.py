@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.columns import impact_columns
+from vibroimpact.dynamics.motion.columns import impact_columns
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.files.plain_names import one_line, plain_names
 
@@ -26,7 +26,7 @@ def impact_rows(impacts: dict[str, Any]) -> list[dict[str, float | int | None]]:
     Examples
     --------
     >>> import numpy as np
-    >>> from vibroimpact.dynamics.columns import IMPACT_COLUMNS
+    >>> from vibroimpact.dynamics.motion.columns import IMPACT_COLUMNS
     >>> impact_rows({name: np.array([1.0]) for name in IMPACT_COLUMNS})[0]["impact"]
     1
     """

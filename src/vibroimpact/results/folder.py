@@ -14,7 +14,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from vibroimpact.dynamics.columns import (
+from vibroimpact.dynamics.motion.columns import (
     FIRST_IMPACT_COLUMNS,
     HISTORY_COLUMNS,
     IMPACT_COLUMNS,

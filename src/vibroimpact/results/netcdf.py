@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.columns import history_columns, impact_columns, meanings
+from vibroimpact.dynamics.motion.columns import history_columns, impact_columns, meanings
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.dynamics.sensors.recording import Signal
-from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.files.check_sums import DamageError
 from vibroimpact.files.hdf5 import PACKED, chunk_shape, members, new_array, new_hdf5, read_array
 from vibroimpact.files.plain_names import plain_names

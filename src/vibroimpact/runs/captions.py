@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.dynamics.problem import STANDARD_GRAVITY
+from vibroimpact.dynamics.statement.problem import STANDARD_GRAVITY
 from vibroimpact.results.result import Result
 from vibroimpact.runs.below import body_below, is_free_below, level_below
 from vibroimpact.runs.chart_data import contacts_with_duration

@@ -33,10 +33,10 @@ from vibroimpact.cases.rigid.rigid_problem import (
     touch_speed,
 )
 from vibroimpact.contact.law import CompliantLaw, unit_of
-from vibroimpact.dynamics.liquid import restitution_kept
-from vibroimpact.dynamics.problem import STANDARD_GRAVITY
+from vibroimpact.dynamics.fluids.liquid import restitution_kept
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
-from vibroimpact.dynamics.sensors.registry import instruments
+from vibroimpact.dynamics.sensors.instruments.registry import instruments
+from vibroimpact.dynamics.statement.problem import STANDARD_GRAVITY
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.report.terminal_report import warning_lines
 from vibroimpact.report.terminal_table import facts

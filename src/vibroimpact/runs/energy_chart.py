@@ -10,7 +10,7 @@ from vibroimpact.arrays import Floats, Indices
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Layer, Level, Spans, Stack
-from vibroimpact.dynamics.columns import ALL_HISTORY_COLUMNS
+from vibroimpact.dynamics.motion.columns import ALL_HISTORY_COLUMNS
 from vibroimpact.results.result import Result
 from vibroimpact.runs.chart_data import spans_of_contact, time_axis, views_of_contacts
 

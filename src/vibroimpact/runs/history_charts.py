@@ -13,7 +13,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Line, Mark, Points
-from vibroimpact.dynamics.columns import HISTORY_COLUMNS
+from vibroimpact.dynamics.motion.columns import HISTORY_COLUMNS
 from vibroimpact.results.result import Result
 from vibroimpact.runs.below import level_below
 from vibroimpact.runs.chart_data import (

@@ -7,7 +7,7 @@ from functools import partial
 
 from vibroimpact.charts.chart import Chart
 from vibroimpact.charts.made import made_charts, made_scene
-from vibroimpact.dynamics.energy import CLOSURE_LIMIT, closure_in_words
+from vibroimpact.dynamics.motion.energy import CLOSURE_LIMIT, closure_in_words
 from vibroimpact.report.case_text import case_text
 from vibroimpact.report.report import (
     Block,

@@ -16,7 +16,7 @@ from vibroimpact.contact.friction.registry import friction_laws
 from vibroimpact.contact.law import unit_of
 from vibroimpact.contact.registry import contact_laws
 from vibroimpact.contact.speed_function import of_table
-from vibroimpact.dynamics.sensors.registry import instruments
+from vibroimpact.dynamics.sensors.instruments.registry import instruments
 from vibroimpact.quoting import shortened, visible
 from vibroimpact.results.result import Result
 from vibroimpact.runs.below import body_below, level_below

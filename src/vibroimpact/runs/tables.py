@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.dynamics.columns import (
+from vibroimpact.dynamics.motion.columns import (
     ALL_IMPACT_COLUMNS,
     FLUID_LEDGER,
     FRICTION_PARTS,

@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
-from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.errors import InputError
 from vibroimpact.identification.measured import on_common_time, sensors_of
 from vibroimpact.quoting import quoted

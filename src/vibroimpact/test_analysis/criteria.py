@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from vibroimpact.arrays import Complex, Floats
-from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.test_analysis.mode_pairs import ModePair
 
 

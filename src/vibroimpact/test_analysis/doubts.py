@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.quoting import quoted
 from vibroimpact.signals.delay import Delay
 from vibroimpact.test_analysis.acquired import LEAD, Acquired

@@ -9,8 +9,8 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.signals.decay.find import DecayMode
 
 _FAR = 0.05

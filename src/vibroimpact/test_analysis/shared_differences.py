@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.structures.modal_model import ModalBasis
 from vibroimpact.test_analysis.mode_pairs import FEWEST, WEAK, ModePair
 

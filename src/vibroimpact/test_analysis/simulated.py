@@ -11,11 +11,11 @@ from vibroimpact.arrays import Floats
 from vibroimpact.cases.build import problem_of
 from vibroimpact.cases.rigid.oblique import oblique_keys
 from vibroimpact.cases.sections.schema import CaseTable
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.dynamics.sensors.place_responses import responses_at, sampled_responses
-from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.errors import InputError
 from vibroimpact.identification.plate import compliances_of, shapes_of
 

@@ -11,9 +11,9 @@ import vibroimpact as vi
 from vibrating import STIFFNESS, drop_on, random_modes
 from vibroimpact.app.draft import draft_of, drafted
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
-from vibroimpact.dynamics.columns import MOTION_COLUMNS
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.motion.columns import MOTION_COLUMNS
 from vibroimpact.dynamics.response import Response
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.runs.charts import chart_makers
 
 

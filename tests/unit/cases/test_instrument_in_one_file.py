@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import vibroimpact as vi
-from vibroimpact.dynamics.sensors.registry import instruments
+from vibroimpact.dynamics.sensors.instruments.registry import instruments
 
 INSTRUMENT = '''
 """A laser vibrometer, which follows the velocity of a spot."""

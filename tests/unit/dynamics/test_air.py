@@ -12,8 +12,8 @@ from scipy.integrate import solve_ivp
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.cases.sections.keys import with_values
-from vibroimpact.dynamics.columns import LEDGER, OBLIQUE_LEDGER, VIBRATION_LEDGER
-from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.motion.columns import LEDGER, OBLIQUE_LEDGER, VIBRATION_LEDGER
+from vibroimpact.dynamics.motion.flight import Flight
 from vibroimpact.structures.modal_model import ModalBasis
 
 SKEW = vi.Oblique(velocity=(0.4, -0.2), gravity=(0.3, 0.0))

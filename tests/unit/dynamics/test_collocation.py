@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vibroimpact.dynamics.collocation import collocation_rule
+from vibroimpact.dynamics.motion.collocation import collocation_rule
 
 
 @pytest.mark.parametrize("time_map", ["touch", "inside", "release"])

@@ -19,9 +19,9 @@ from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import contact_laws
 from vibroimpact.contact.speed_function import SpeedTable
 from vibroimpact.contact.static import static_indentation
-from vibroimpact.dynamics.columns import IMPACT_COLUMNS, OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core import static
+from vibroimpact.dynamics.motion.columns import IMPACT_COLUMNS, OBLIQUE_IMPACT_COLUMNS
 
 PAIR = ContactPair(2.4e9, 0.02, 0.1, 8e7, 0.3)
 BALL = vi.Body(mass=0.1, contact_offset=0.02)

@@ -18,7 +18,7 @@ from vibroimpact.dynamics.core import dormand_prince
 from vibroimpact.dynamics.core.line import CAPTURED, line_under
 from vibroimpact.dynamics.core.line_records import LineState
 from vibroimpact.dynamics.core.line_step import BY_FLOW, BY_RATE, BY_ROOT, IMPLICIT, advance
-from vibroimpact.dynamics.impact_conditions import impact_conditions_of
+from vibroimpact.dynamics.motion.impact_conditions import impact_conditions_of
 from vibroimpact.dynamics.rigid.line_contact import RecordedContact
 
 PAIR = ContactPair(

@@ -16,7 +16,7 @@ from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.limits.conditions import Conditions
 from vibroimpact.cases.limits.limit import numbers_of
 from vibroimpact.cases.sections.keys import with_values
-from vibroimpact.dynamics.liquid import restitution_kept
+from vibroimpact.dynamics.fluids.liquid import restitution_kept
 from vibroimpact.exporting.load_drop import load_drop as drop_in_folder
 from vibroimpact.exporting.rigid_drop import as_rigid
 from vibroimpact.runs.case_document import case_document

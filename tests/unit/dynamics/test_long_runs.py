@@ -13,7 +13,7 @@ import pytest
 import vibroimpact as vi
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.laws.walton_braun import WaltonBraun
-from vibroimpact.dynamics.impact_rows import stacked_tables, table_of
+from vibroimpact.dynamics.motion.impact_rows import stacked_tables, table_of
 from vibroimpact.results import fine_history
 
 BALL = vi.Body(mass=0.09, contact_offset=0.025)

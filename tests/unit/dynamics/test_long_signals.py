@@ -7,8 +7,8 @@ import tracemalloc
 import numpy as np
 import pytest
 
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.dynamics.sensors.recording import Signal
-from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.runs.chart_data import MOST_POINTS, drawn_signal
 
 COUNT = 3_000_000

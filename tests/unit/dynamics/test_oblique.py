@@ -13,9 +13,9 @@ import pytest
 import vibroimpact as vi
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.sections.keys import with_values
-from vibroimpact.dynamics.columns import LEDGER, OBLIQUE_LEDGER, VIBRATION_LEDGER
-from vibroimpact.dynamics.oblique import rubbed_contact
+from vibroimpact.dynamics.motion.columns import LEDGER, OBLIQUE_LEDGER, VIBRATION_LEDGER
 from vibroimpact.dynamics.rigid import drops as drops_of_rigid
+from vibroimpact.dynamics.rigid import rubbed_contact
 from vibroimpact.runs.tables import ledger_table
 
 RADIUS, MASS = 0.01, 0.02

@@ -18,7 +18,7 @@ from vibroimpact.dynamics.core.line_records import LineContact
 from vibroimpact.dynamics.core.normal_records import FORCE, IMPULSE, PACE, TIME
 from vibroimpact.dynamics.core.phase_contact import collocate_contact
 from vibroimpact.dynamics.core.phase_records import ROWS
-from vibroimpact.dynamics.impact_conditions import impact_conditions_of
+from vibroimpact.dynamics.motion.impact_conditions import impact_conditions_of
 from vibroimpact.dynamics.rigid.line_contact import RecordedContact, _manner
 from vibroimpact.dynamics.rigid.phase_rules import normal_grid, phase_rules
 

@@ -8,7 +8,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import vibroimpact as vi
-from vibroimpact.dynamics.columns import IMPACT_COLUMNS, LEDGER
+from vibroimpact.dynamics.motion.columns import IMPACT_COLUMNS, LEDGER
 
 MAY_BE_MISSING = {"restitution_asked"}
 

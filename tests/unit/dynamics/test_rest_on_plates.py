@@ -21,7 +21,7 @@ from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.contact.registry import contact_laws
-from vibroimpact.dynamics.columns import LEDGER, VIBRATION_LEDGER
+from vibroimpact.dynamics.motion.columns import LEDGER, VIBRATION_LEDGER
 from vibroimpact.dynamics.vibrating import drop_at_start, drops
 from vibroimpact.dynamics.vibrating.contact_equilibrium import ContactEquilibrium
 from vibroimpact.dynamics.vibrating.drop_system import centre_of, system_of

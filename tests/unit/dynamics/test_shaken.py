@@ -19,8 +19,8 @@ from vibroimpact.cases.sections.keys import with_values
 from vibroimpact.charts.marks import Line
 from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
 from vibroimpact.contact.laws.newton import Newton
-from vibroimpact.dynamics.columns import ALL_HISTORY_COLUMNS
-from vibroimpact.dynamics.shaken.tabulated import tabulated_motion
+from vibroimpact.dynamics.motion.columns import ALL_HISTORY_COLUMNS
+from vibroimpact.dynamics.statement.tabulated_motion import tabulated_motion
 from vibroimpact.runs.charts import run_charts
 from vibroimpact.runs.history_charts import _touch_and_release, tops_of_rebounds
 from vibroimpact.runs.scene import rigid_scene

@@ -16,7 +16,7 @@ from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
 from vibroimpact.contact.laws.newton import Newton
-from vibroimpact.dynamics.columns import IMPACT_COLUMNS, LEDGER
+from vibroimpact.dynamics.motion.columns import IMPACT_COLUMNS, LEDGER
 
 BALL = vi.Body(mass=0.1, contact_offset=0.02)
 LAW = LankaraniNikravesh(stiffness=5e8, restitution=0.6)

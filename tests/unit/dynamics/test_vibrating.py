@@ -20,8 +20,8 @@ from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.laws.walton_braun import WaltonBraun
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import contact_laws
-from vibroimpact.dynamics.columns import LEDGER, VIBRATION_LEDGER
-from vibroimpact.dynamics.outcome import Outcome
+from vibroimpact.dynamics.motion.columns import LEDGER, VIBRATION_LEDGER
+from vibroimpact.dynamics.statement.outcome import Outcome
 
 HERTZ = Hertz(stiffness=STIFFNESS)
 LOSSY = LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.65)

@@ -24,9 +24,9 @@ import vibroimpact as vi
 from support import plain_case
 from vibroimpact.cli import main
 from vibroimpact.contact.speed_function import SpeedFunction
-from vibroimpact.dynamics.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, meanings
+from vibroimpact.dynamics.motion.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, meanings
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.dynamics.sensors.recording import Signal
-from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import find_export_format
 from vibroimpact.exporting.export_result import default_output

@@ -28,8 +28,8 @@ from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.parameters import parameter
 from vibroimpact.contact.registry import contact_laws
 from vibroimpact.contact.speed_function import SpeedFunction
-from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.restitution import achieved_restitution
+from vibroimpact.dynamics.statement.oblique import Oblique
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import clipped_dashpot
 from vibroimpact.exporting.drop import Drop

@@ -21,7 +21,7 @@ import xarray
 import vibroimpact as vi
 from pages import Page
 from vibroimpact.cli import main
-from vibroimpact.dynamics.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, LEDGER, meanings
+from vibroimpact.dynamics.motion.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, LEDGER, meanings
 from vibroimpact.files.hdf5 import new_array, new_hdf5, read_array
 from vibroimpact.files.result_folder import new_folder
 from vibroimpact.results.netcdf import read_groups

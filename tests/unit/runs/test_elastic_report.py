@@ -23,7 +23,7 @@ from rich.console import Console
 
 import vibroimpact as vi
 from pages import Page
-from vibroimpact.dynamics.columns import (
+from vibroimpact.dynamics.motion.columns import (
     IMPACT_COLUMNS,
     LEDGER,
     VIBRATION_HISTORY_COLUMNS,

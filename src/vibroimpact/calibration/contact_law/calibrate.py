@@ -36,8 +36,8 @@ from vibroimpact.calibration.observed.matchable import (
     check_weights,
 )
 from vibroimpact.calibration.observed.observations import Observations
-from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.statement.problem import Problem, StatesProblem
 from vibroimpact.errors import InputError
 
 _MET = 1e-6

@@ -12,7 +12,7 @@ from vibroimpact.calibration.fit.overlay import Overlay
 from vibroimpact.calibration.observed.observations import Observations
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.reader import case_of
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.errors import InputError
 from vibroimpact.ranges import Range
 from vibroimpact.report.reported import Reported

@@ -33,8 +33,8 @@ from vibroimpact.calibration.fit.uncertainty import (
 from vibroimpact.calibration.observed.inputs import guessed_doubt
 from vibroimpact.calibration.observed.matchable import MATCHABLE
 from vibroimpact.calibration.observed.observations import Effects, Observations, with_noise_scale
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.errors import InputError
 
 _CURVE_POINTS = 41

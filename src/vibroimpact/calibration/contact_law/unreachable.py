@@ -18,7 +18,7 @@ from vibroimpact.calibration.observed.restitution_limit import (
     restitution_limit,
 )
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.errors import InputError
 
 _BEYOND_NOISE = 3.0

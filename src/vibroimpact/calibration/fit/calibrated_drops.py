@@ -15,8 +15,8 @@ from vibroimpact.calibration.observed.matchable import MATCHABLE
 from vibroimpact.calibration.observed.noise import standard_deviations
 from vibroimpact.calibration.observed.observations import Observations
 from vibroimpact.contact.speed_function import SpeedFunction
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.statement.problem import Problem
 
 MOST_IMPACTS = 20
 """The largest number of impacts that are calibrated."""

@@ -13,7 +13,7 @@ import numpy as np
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.calibration.observed.matchable import REBOUNDS
 from vibroimpact.contact.roots import find_root, solve_monotonic
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.ranges import Range
 
 _STEP = 1e-4

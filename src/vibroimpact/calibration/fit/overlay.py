@@ -12,8 +12,8 @@ from vibroimpact.arrays import Floats
 from vibroimpact.calibration.fit.matching import Tunable
 from vibroimpact.calibration.observed.flights import VacuumFlights
 from vibroimpact.calibration.observed.observations import Observations
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.statement.problem import Problem
 
 _MOST_CONTACTS = 20
 """Number of contacts that are shown."""

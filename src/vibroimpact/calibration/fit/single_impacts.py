@@ -10,12 +10,12 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.observed.matchable import ALONG_PLATE, MATCHABLE, MatchableQuantity
 from vibroimpact.contact.law import ContactLaw
-from vibroimpact.dynamics.flight_in_fluid import first_flights, speed_of_fall
-from vibroimpact.dynamics.oblique.statement import Oblique
-from vibroimpact.dynamics.outcome import Outcome
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.motion.flight_in_fluid import first_flights, speed_of_fall
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.statement.oblique import Oblique
+from vibroimpact.dynamics.statement.outcome import Outcome
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.tabulate import BLOCK, tabulate
 
 _TOLERANCE = 1e-11

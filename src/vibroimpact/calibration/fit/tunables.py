@@ -11,7 +11,7 @@ from vibroimpact.arrays import Floats, Indices
 from vibroimpact.calibration.fit.matching import Tunable
 from vibroimpact.calibration.fit.single_impacts import batched_law, single_impacts
 from vibroimpact.contact.law import ContactLaw, unit_of
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.errors import InputError, choices
 from vibroimpact.ranges import Range
 

@@ -14,7 +14,7 @@ from vibroimpact.calibration.fit.fitting import Fit
 from vibroimpact.calibration.fit.matching import Tunable, match
 from vibroimpact.calibration.fit.single_impacts import first_approach_speed
 from vibroimpact.calibration.observed.observations import Observations
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.units.display import known_text
 
 _DRAWN_VALUES = 2000  # values computed by the default bootstrap, so that it takes seconds

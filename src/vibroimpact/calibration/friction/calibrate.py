@@ -25,7 +25,7 @@ from vibroimpact.calibration.observed.observations import Observations, with_noi
 from vibroimpact.calibration.observed.section import FRICTION
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.reader import case_of
-from vibroimpact.dynamics.problem import Problem, StatesProblem
+from vibroimpact.dynamics.statement.problem import Problem, StatesProblem
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.report.reported import Reported
 

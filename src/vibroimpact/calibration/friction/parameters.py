@@ -19,8 +19,8 @@ from vibroimpact.calibration.observed.observations import from_table
 from vibroimpact.calibration.observed.section import FRICTION
 from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
-from vibroimpact.dynamics.oblique.statement import Oblique
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.oblique import Oblique
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.tabulate import BLOCK
 from vibroimpact.errors import InputError, choices
 from vibroimpact.ranges import Range

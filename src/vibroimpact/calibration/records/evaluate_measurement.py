@@ -15,9 +15,9 @@ from vibroimpact.calibration.records.fluid_flights import FluidFlights
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.rigid.pair import sphere_density
 from vibroimpact.cases.rigid.rigid_problem import fluid_of, touch_speed
-from vibroimpact.dynamics.air import Air
-from vibroimpact.dynamics.fluid import Fluid
-from vibroimpact.dynamics.liquid import Liquid
+from vibroimpact.dynamics.fluids.air import Air
+from vibroimpact.dynamics.fluids.fluid import Fluid
+from vibroimpact.dynamics.fluids.liquid import Liquid
 from vibroimpact.errors import InputError
 
 _MATTERS = 0.002

@@ -10,8 +10,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.observed.flights import EndSpeeds, ReturnFlight
-from vibroimpact.dynamics.air import Air
-from vibroimpact.dynamics.fluid import Fluid
+from vibroimpact.dynamics.fluids.air import Air
+from vibroimpact.dynamics.fluids.fluid import Fluid
 from vibroimpact.errors import InputError
 
 _POINTS = 513
@@ -38,9 +38,9 @@ class FluidFlights:
 
     Below the top of a flight, at a depth s, :math:`v\,dv/ds = g - a(v)` on the way down and
     :math:`g + a(v)` on the way up, with the deceleration a by drag of
-    `vibroimpact.dynamics.fluid`, and as g in a liquid the part of gravity that buoyancy and added
-    mass leave. Both equations are integrated once over the square root of s, in which speeds and
-    times are smooth, and then interpolated by cubic Hermite splines.
+    `vibroimpact.dynamics.fluids.fluid`, and as g in a liquid the part of gravity that buoyancy and
+    added mass leave. Both equations are integrated once over the square root of s, in which speeds
+    and times are smooth, and then interpolated by cubic Hermite splines.
 
     Parameters
     ----------

@@ -35,10 +35,10 @@ from vibroimpact.cases.validity.plate_waves import PLATE_THEORY_INERTIA
 from vibroimpact.compiled import interpreted
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.dynamics.impact_conditions import impact_conditions_of
 from vibroimpact.dynamics.local_element import identify_local_element, local_element_deviations
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.motion.impact_conditions import impact_conditions_of
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material

@@ -10,7 +10,7 @@ from vibroimpact.cases.fields.fluid import read_fluid
 from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section
-from vibroimpact.dynamics.air import AIR_DENSITY, AIR_VISCOSITY, Air
+from vibroimpact.dynamics.fluids.air import AIR_DENSITY, AIR_VISCOSITY, Air
 from vibroimpact.errors import InputError
 from vibroimpact.ranges import Range
 

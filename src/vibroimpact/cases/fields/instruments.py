@@ -13,9 +13,9 @@ from pydantic_core import CoreSchema, core_schema
 
 from vibroimpact.cases.fields.quantities import Quantity, read_quantity
 from vibroimpact.cases.fields.section import Section
-from vibroimpact.dynamics.sensors.electronics import Amplifier, Converter
+from vibroimpact.dynamics.sensors.instruments.electronics import Amplifier, Converter
 from vibroimpact.dynamics.sensors.instruments.instrument import InstrumentInCase
-from vibroimpact.dynamics.sensors.registry import instruments
+from vibroimpact.dynamics.sensors.instruments.registry import instruments
 from vibroimpact.errors import InputError
 from vibroimpact.ranges import Range
 from vibroimpact.registry import class_named

@@ -10,7 +10,7 @@ from vibroimpact.cases.fields.fluid import read_fluid
 from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section
-from vibroimpact.dynamics.liquid import WATER_DENSITY, WATER_VISCOSITY, Liquid
+from vibroimpact.dynamics.fluids.liquid import WATER_DENSITY, WATER_VISCOSITY, Liquid
 from vibroimpact.ranges import Range
 
 

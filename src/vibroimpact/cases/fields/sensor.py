@@ -23,8 +23,8 @@ from vibroimpact.dynamics.sensors.instruments.instrument import (
     Subject,
 )
 from vibroimpact.dynamics.sensors.instruments.instrument import Quantity as MeasuredQuantity
-from vibroimpact.dynamics.sensors.registry import instruments
-from vibroimpact.dynamics.sensors.sensor import DEFAULT_FILTER, FILTERS, Filter, Sensor
+from vibroimpact.dynamics.sensors.instruments.registry import instruments
+from vibroimpact.dynamics.sensors.instruments.sensor import DEFAULT_FILTER, FILTERS, Filter, Sensor
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.quoting import quoted
 from vibroimpact.ranges import Range

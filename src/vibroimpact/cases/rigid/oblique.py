@@ -11,7 +11,7 @@ from vibroimpact.cases.fields.section import derived
 from vibroimpact.cases.rigid.pair import contact_pair
 from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.contact.friction.registry import find_friction_law
-from vibroimpact.dynamics.oblique.statement import Oblique
+from vibroimpact.dynamics.statement.oblique import Oblique
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.cases.fields.plate_motion import MotionTable
 from vibroimpact.cases.fields.section import derived
-from vibroimpact.dynamics.shaken.statement import PlateMotion
+from vibroimpact.dynamics.statement.plate_motion import PlateMotion
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def _motion(table: MotionTable) -> tuple[PlateMotion, float]:
             direction=direction,
         ), np.inf
     # here, as few plates are shaken
-    from vibroimpact.dynamics.shaken.tabulated import periodic_motion, tabulated_motion
+    from vibroimpact.dynamics.statement.tabulated_motion import periodic_motion, tabulated_motion
 
     try:
         step, displacement = _samples(table.file, table.columns, table.repeat)
@@ -80,7 +80,10 @@ def _samples(file: str, columns: str | None, repeat: bool) -> tuple[float, Float
         has too few samples or too many, a sample can't be guessed from its neighbours, or a period
         does not end where it begins.
     """
-    from vibroimpact.dynamics.shaken.tabulated import integrated_twice, integrated_twice_over_period
+    from vibroimpact.dynamics.statement.tabulated_motion import (
+        integrated_twice,
+        integrated_twice_over_period,
+    )
     from vibroimpact.measurements.table_file import read_table_file
 
     table = read_table_file(

@@ -16,9 +16,9 @@ from vibroimpact.cases.rigid.plate_motion import motion_length, motion_of
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.registry import find_contact_law
 from vibroimpact.contact.speed_function import BySpeed, SpeedFunction, SpeedTable, held
-from vibroimpact.dynamics.flight_in_fluid import speed_of_fall
-from vibroimpact.dynamics.fluid import Fluid
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.fluids.fluid import Fluid
+from vibroimpact.dynamics.motion.flight_in_fluid import speed_of_fall
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:

@@ -34,9 +34,9 @@ from vibroimpact.cases.fields.sensor import SensorSection
 from vibroimpact.cases.fields.size_limits import MOST_ITEMS, Name, at_most
 from vibroimpact.cases.fields.supports import SupportsField
 from vibroimpact.cases.wrong_units.lengths import likely_lengths
-from vibroimpact.dynamics.air import AIR_DENSITY
-from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
-from vibroimpact.dynamics.tolerance import TOLERANCES
+from vibroimpact.dynamics.fluids.air import AIR_DENSITY
+from vibroimpact.dynamics.statement.problem import MOST_IMPACTS, Problem
+from vibroimpact.dynamics.statement.tolerance import TOLERANCES
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID
 from vibroimpact.quoting import quoted

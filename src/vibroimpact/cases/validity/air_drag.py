@@ -9,8 +9,8 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.cases.limits.conditions import Conditions
 from vibroimpact.cases.limits.limit import Limit, percent_less
-from vibroimpact.dynamics.air import AIR_DENSITY, AIR_VISCOSITY, check_thin
 from vibroimpact.dynamics.core.fall import drag_coefficient
+from vibroimpact.dynamics.fluids.air import AIR_DENSITY, AIR_VISCOSITY, check_thin
 from vibroimpact.errors import InputError
 
 # fixed-point iterations of speed and drag coefficient; each reduces the error of the speed by a

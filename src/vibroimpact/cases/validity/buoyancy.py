@@ -9,8 +9,8 @@ import math
 from vibroimpact.arrays import Array
 from vibroimpact.cases.limits.conditions import Conditions
 from vibroimpact.cases.limits.limit import Limit, percent_less
-from vibroimpact.dynamics.air import Air
-from vibroimpact.dynamics.liquid import Liquid
+from vibroimpact.dynamics.fluids.air import Air
+from vibroimpact.dynamics.fluids.liquid import Liquid
 
 
 def _number(drops: Conditions) -> Array:

@@ -7,7 +7,7 @@ import math
 from vibroimpact.arrays import Array
 from vibroimpact.cases.limits.conditions import Conditions
 from vibroimpact.cases.limits.limit import Limit
-from vibroimpact.dynamics.liquid import CRITICAL_STOKES, Liquid, restitution_kept
+from vibroimpact.dynamics.fluids.liquid import CRITICAL_STOKES, Liquid, restitution_kept
 
 
 def _number(drops: Conditions) -> Array:

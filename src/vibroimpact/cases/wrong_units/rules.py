@@ -16,7 +16,7 @@ from vibroimpact.cases.wrong_units.plausible import (
     number_text,
     ratio_text,
 )
-from vibroimpact.dynamics.air import AIR_DENSITY
+from vibroimpact.dynamics.fluids.air import AIR_DENSITY
 
 _GRAVITY = 9.8  # m/s^2, for the weight on springs, independent of drop.gravity
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.bounce import Bounce
-from vibroimpact.dynamics.columns import OBLIQUE_HISTORY_COLUMNS
+from vibroimpact.dynamics.motion.along import State, energy_taken
+from vibroimpact.dynamics.motion.bounce import Bounce
+from vibroimpact.dynamics.motion.columns import OBLIQUE_HISTORY_COLUMNS
 from vibroimpact.dynamics.oblique.lying import lie
-from vibroimpact.dynamics.oblique.state import State, energy_taken
-from vibroimpact.dynamics.oblique.statement import Oblique
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.oblique import Oblique
+from vibroimpact.dynamics.statement.problem import Problem
 
 
 def oblique_history(

@@ -11,7 +11,7 @@ from vibroimpact.compiled import interpreted
 from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.dynamics.core.sphere_records import RubbedSphere, SphereState
 from vibroimpact.dynamics.core.spheres_on_plate import is_in_closed_form, lie_on_plate
-from vibroimpact.dynamics.oblique.state import Sphere, State
+from vibroimpact.dynamics.motion.along import Sphere, State
 
 _FEW = 5
 """Fewer spheres than these whose motion is in closed form do not load the compiler."""

@@ -10,13 +10,13 @@ from vibroimpact.arrays import Floats
 from vibroimpact.compiled import interpreted, law_addresses
 from vibroimpact.contact.friction.law import ImpulsiveFriction
 from vibroimpact.contact.friction.laws.coulomb import Coulomb
-from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.dynamics.core.sphere_contact import strike
-from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.law_coefficients import coefficients_of
+from vibroimpact.dynamics.motion.along import State, energy_taken, spheres_of
+from vibroimpact.dynamics.motion.columns import OBLIQUE_IMPACT_COLUMNS
+from vibroimpact.dynamics.motion.flight import Flight
+from vibroimpact.dynamics.motion.law_coefficients import coefficients_of
 from vibroimpact.dynamics.oblique.lying import lie
-from vibroimpact.dynamics.oblique.state import State, energy_taken, spheres_of
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 
 
 class ObliqueMotion:

@@ -1,4 +1,4 @@
-"""Drops of rigid bodies on a plate whose surface does not move, from a problem to a response."""
+"""Drops of rigid bodies on a plate whose surface does not move, followed to their ends."""
 
 from __future__ import annotations
 
@@ -14,31 +14,31 @@ from vibroimpact.arrays import Floats
 from vibroimpact.bodies.ball import mean_density
 from vibroimpact.compiled import interpreted
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
-from vibroimpact.dynamics.columns import IMPACT_COLUMNS, OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core.drop_records import DropManner, Drops, ObliqueDrops
 from vibroimpact.dynamics.core.drops import follow_drops
 from vibroimpact.dynamics.core.line_records import ContactManner
 from vibroimpact.dynamics.core.oblique_drops import follow_oblique_drops
 from vibroimpact.dynamics.core.sphere_records import SphereState
-from vibroimpact.dynamics.energy import close_ledger, ledger_holds
-from vibroimpact.dynamics.law_coefficients import coefficients_of
+from vibroimpact.dynamics.motion.along import State, energy_taken, friction_parts, spheres_of
+from vibroimpact.dynamics.motion.columns import IMPACT_COLUMNS, OBLIQUE_IMPACT_COLUMNS
+from vibroimpact.dynamics.motion.ended_run import EndedRun
+from vibroimpact.dynamics.motion.energy import close_ledger, ledger_holds
+from vibroimpact.dynamics.motion.law_coefficients import coefficients_of
+from vibroimpact.dynamics.motion.progress import fraction_done
+from vibroimpact.dynamics.motion.rest import Rest
+from vibroimpact.dynamics.motion.run_rules import IS_AT_REST, OUTCOME_CODES, laws_of, stop_rules_of
 from vibroimpact.dynamics.oblique.lying import lie
-from vibroimpact.dynamics.oblique.rubbed_contact import (
+from vibroimpact.dynamics.rigid.fluid_drops import FluidDrops
+from vibroimpact.dynamics.rigid.line_contact import NO_CONTACTS, contact_manner
+from vibroimpact.dynamics.rigid.recorded_drops import RecordedDrops, Start
+from vibroimpact.dynamics.rigid.rubbed_contact import (
     friction_coefficients,
     friction_steps,
     rubbing_of,
 )
-from vibroimpact.dynamics.oblique.state import State, energy_taken, friction_parts, spheres_of
-from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
-from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
-from vibroimpact.dynamics.progress import fraction_done
-from vibroimpact.dynamics.response import Response
-from vibroimpact.dynamics.rest import Rest
-from vibroimpact.dynamics.rigid.fluid_drops import FluidDrops
-from vibroimpact.dynamics.rigid.line_contact import NO_CONTACTS, contact_manner
-from vibroimpact.dynamics.rigid.recorded_drops import RecordedDrops, Start
-from vibroimpact.dynamics.run_rules import IS_AT_REST, OUTCOME_CODES, laws_of, stop_rules_of
+from vibroimpact.dynamics.statement.outcome import OUTCOMES, Outcome
+from vibroimpact.dynamics.statement.problem import MOST_IMPACTS, Problem
 
 _FIRST_ROOM = 8  # impacts of a drop; the room doubles
 _FEW = 200
@@ -50,8 +50,8 @@ _UNTIL_REST = 50  # about so many impacts of a drop
 
 def follow(
     problem: Problem, progress: Callable[[float], None] | None, *, keeps_bounces: bool
-) -> Response:
-    """Return the response of the drops of a problem, with arrays of a batch.
+) -> EndedRun:
+    """Follow the drops of a problem to the ends of their runs.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def follow(
             if manner.waits:
                 _take_laws_at_touch(problem, drops, held)
     ended = _Ended(problem, drops, oblique, in_fluid, energy_in, start)
-    return _response_of(ended, keeps_bounces=keeps_bounces)
+    return _ended_run(ended, keeps_bounces=keeps_bounces)
 
 
 class _Ended(NamedTuple):
@@ -290,8 +290,8 @@ def _energy_of(problem: Problem, drops: Drops, start: Start) -> Floats:
     return np.asarray(energy + kinetic + rotation)
 
 
-def _response_of(ended: _Ended, *, keeps_bounces: bool) -> Response:
-    """Return the response of drops that have ended."""
+def _ended_run(ended: _Ended, *, keeps_bounces: bool) -> EndedRun:
+    """Return drops that have ended."""
     problem = ended.problem
     drops = ended.drops
     oblique = ended.oblique
@@ -325,7 +325,7 @@ def _response_of(ended: _Ended, *, keeps_bounces: bool) -> Response:
         bounces = RecordedDrops(
             problem, ended.start, drops.impacts, drops.flights, drops.rows, end_time
         )
-    return Response(problem, _table(ended), energy, outcomes, end_time, rest, bounces)
+    return EndedRun(problem, _table(ended), energy, outcomes, end_time, rest, bounces)
 
 
 def _lie(problem: Problem, drops: Drops, oblique: ObliqueDrops, end_time: Floats) -> None:

@@ -12,10 +12,10 @@ from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core.drop_records import DropManner, Drops, FreeFall, ObliqueDrops
 from vibroimpact.dynamics.core.drops import write_touch_gaps
 from vibroimpact.dynamics.core.stop_rules import first_end
-from vibroimpact.dynamics.flight_in_fluid import FluidFlight
-from vibroimpact.dynamics.fluid import Fluid
-from vibroimpact.dynamics.oblique.state import State, spheres_of
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.fluids.fluid import Fluid
+from vibroimpact.dynamics.motion.along import State, spheres_of
+from vibroimpact.dynamics.motion.flight_in_fluid import FluidFlight
+from vibroimpact.dynamics.statement.problem import Problem
 
 _LEAST_REST_SPEED = 1e-6  # of the first approach speed
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.motion.ride import RideSegment
 from vibroimpact.dynamics.rigid.segments import FlightSegment, RestSegment
 from vibroimpact.dynamics.rigid.timeline import Timeline
-from vibroimpact.dynamics.shaken.ride import RideSegment
+from vibroimpact.dynamics.statement.problem import Problem
 
 
 def rigid_history(

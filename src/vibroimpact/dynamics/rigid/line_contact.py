@@ -11,7 +11,6 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import interpreted, law_addresses, law_coefficients
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.dynamics.contact import Contact, Piece
 from vibroimpact.dynamics.core import line_records as records
 from vibroimpact.dynamics.core.events import ENDS, TENSIONS
 from vibroimpact.dynamics.core.law import law_at_touch
@@ -22,8 +21,9 @@ from vibroimpact.dynamics.core.normal_records import NormalGrid
 from vibroimpact.dynamics.core.phase_contact import collocate_contact
 from vibroimpact.dynamics.core.phase_records import ROWS, PhaseRules
 from vibroimpact.dynamics.core.records import Law
-from vibroimpact.dynamics.impact_conditions import ImpactConditions
-from vibroimpact.dynamics.law_coefficients import coefficients_of
+from vibroimpact.dynamics.motion.contact import Contact, Piece
+from vibroimpact.dynamics.motion.impact_conditions import ImpactConditions
+from vibroimpact.dynamics.motion.law_coefficients import coefficients_of
 from vibroimpact.dynamics.rigid.phase_rules import normal_grid, phase_rules
 
 _MOST_STEPS = 1_000_000  # the stiffest sensible contacts need thousands

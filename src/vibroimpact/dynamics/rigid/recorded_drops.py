@@ -12,19 +12,19 @@ import numpy as np
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.bodies.ball import mean_density
 from vibroimpact.contact.law import CompliantLaw, InstantaneousLaw
-from vibroimpact.dynamics.bounce import Bounce
 from vibroimpact.dynamics.core import drop_records as records
-from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.impact_conditions import ImpactConditions, impact_conditions_of
-from vibroimpact.dynamics.oblique.rubbed_contact import RubbedContact
-from vibroimpact.dynamics.oblique.state import (
+from vibroimpact.dynamics.motion.along import (
     ContactAlong,
     ImpulseAlong,
     Sphere,
     State,
     spheres_of,
 )
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.motion.bounce import Bounce
+from vibroimpact.dynamics.motion.flight import Flight
+from vibroimpact.dynamics.motion.impact_conditions import ImpactConditions, impact_conditions_of
+from vibroimpact.dynamics.rigid.rubbed_contact import RubbedContact
+from vibroimpact.dynamics.statement.problem import Problem
 
 
 class Start(NamedTuple):
@@ -141,7 +141,7 @@ class RecordedDrop(Sequence[Bounce]):
         if self.problem.fluid is None:
             return Flight(start, gap, velocity, self._gravity)
         # only where it is needed: it loads much
-        from vibroimpact.dynamics.flight_in_fluid import flight_of
+        from vibroimpact.dynamics.motion.flight_in_fluid import flight_of
 
         along = np.zeros((0, 1))
         oblique = self._along(number)

@@ -11,9 +11,9 @@ from typing import Protocol
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.impact_conditions import ImpactConditions
-from vibroimpact.dynamics.shaken.ride import RideSegment
+from vibroimpact.dynamics.motion.flight import Flight
+from vibroimpact.dynamics.motion.impact_conditions import ImpactConditions
+from vibroimpact.dynamics.motion.ride import RideSegment
 
 Motion = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
 """Gap [m], upward velocity [m/s], contact force [N], stored energy [J], and energy lost in damping

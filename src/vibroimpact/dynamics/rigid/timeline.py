@@ -9,7 +9,8 @@ from typing import cast, overload
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.dynamics.bounce import Bounce
+from vibroimpact.dynamics.motion.bounce import Bounce
+from vibroimpact.dynamics.motion.ride import RideSegment
 from vibroimpact.dynamics.rigid.segments import (
     ContactSegment,
     FlightSegment,
@@ -17,7 +18,6 @@ from vibroimpact.dynamics.rigid.segments import (
     RestSegment,
     Segment,
 )
-from vibroimpact.dynamics.shaken.ride import RideSegment
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.sensors.pole_pairs import PolePairs, Section
-from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.sensors.instruments.pole_pairs import PolePairs, Section
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 
 HALF_LENGTH = 33
 """Half width of the converter's kernel in sampling periods."""

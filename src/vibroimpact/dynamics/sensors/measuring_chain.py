@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.sensors.pole_pairs import PolePairs, Section
+from vibroimpact.dynamics.sensors.instruments.pole_pairs import PolePairs, Section
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 
 _POLE_DISTANCE = 1e-6

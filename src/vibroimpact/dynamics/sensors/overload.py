@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH, AntiAlias, kernel, parallel
-from vibroimpact.dynamics.sensors.sensor import sample_count
+from vibroimpact.dynamics.sensors.instruments.sensor import sample_count
 
 _LEAST_OVERSAMPLING = 8
 """Least oversampling of a clipped signal."""

@@ -16,11 +16,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.antialias import FINENESS, HALF_LENGTH, antialias_of
 from vibroimpact.dynamics.sensors.filtered_chain import add_responses, filtered_chain
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, measuring_chain
-from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.drop_system import bases_of_plate
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 from vibroimpact.errors import InputError

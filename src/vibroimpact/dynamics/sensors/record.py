@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.antialias import FINENESS, antialias_of, gain_at
-from vibroimpact.dynamics.sensors.electronics import amplified, seeds
 from vibroimpact.dynamics.sensors.filtered_chain import filtered_chain
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.instruments.electronics import amplified, seeds
 from vibroimpact.dynamics.sensors.instruments.instrument import SUBJECTS_AT_REST
+from vibroimpact.dynamics.sensors.instruments.pole_pairs import Section
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor, sample_count
 from vibroimpact.dynamics.sensors.measuring_chain import (
     MeasuringChain,
     measuring_chain,
@@ -27,7 +28,6 @@ from vibroimpact.dynamics.sensors.overload import (
     finer_rate,
     overload_of,
 )
-from vibroimpact.dynamics.sensors.pole_pairs import Section
 from vibroimpact.dynamics.sensors.ports import Ports, ports_of
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sampled import (
@@ -39,9 +39,9 @@ from vibroimpact.dynamics.sensors.sampled import (
     sample_filtered,
     sample_filtered_chain,
 )
-from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
 from vibroimpact.dynamics.sensors.sound import heard
 from vibroimpact.dynamics.sensors.steady_outputs import steady_outputs
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.drop_system import bases_of_plate
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 from vibroimpact.errors import InputError

@@ -22,13 +22,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.sensors.instruments.pole_pairs import PolePairs, Section
 from vibroimpact.dynamics.sensors.measuring_chain import (
     MeasuringChain,
     at_port,
     point_receptance,
     section_outputs,
 )
-from vibroimpact.dynamics.sensors.pole_pairs import PolePairs, Section
 from vibroimpact.dynamics.sensors.pulses import Pulses, gauss_rule
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators, joined
 from vibroimpact.dynamics.vibrating.rest_motion import FreeOscillations, RestMotion

@@ -13,8 +13,8 @@ import numpy as np
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.sensors.antialias import FINENESS, HALF_LENGTH, kernel
 from vibroimpact.dynamics.sensors.filtered_chain import FilteredChain, filter_gains, filtered_chain
+from vibroimpact.dynamics.sensors.instruments.pole_pairs import PolePairs
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain
-from vibroimpact.dynamics.sensors.pole_pairs import PolePairs
 from vibroimpact.dynamics.sensors.ports import Ports
 from vibroimpact.dynamics.sensors.pulses import Pulses, force_derivatives
 from vibroimpact.dynamics.sensors.rest_chain import rest_chain, rest_pulses

@@ -23,9 +23,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH, kernel
 from vibroimpact.dynamics.sensors.filtered_chain import FilteredChain, filtered_chain
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.dynamics.sensors.measuring_chain import measuring_chain, next_octave
 from vibroimpact.dynamics.sensors.ports import Ports
 from vibroimpact.dynamics.sensors.sampled import (
@@ -34,7 +34,7 @@ from vibroimpact.dynamics.sensors.sampled import (
     response_length,
     sample_filtered,
 )
-from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.drop_system import bases_of_plate
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 

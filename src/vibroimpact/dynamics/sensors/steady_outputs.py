@@ -16,11 +16,11 @@ import numpy as np
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
 from vibroimpact.dynamics.sensors.filtered_chain import filter_gains
-from vibroimpact.dynamics.sensors.pole_pairs import PolePairs, Section
+from vibroimpact.dynamics.sensors.instruments.pole_pairs import PolePairs, Section
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.dynamics.sensors.sampled import blocks_of
-from vibroimpact.dynamics.sensors.sensor import Sensor
-from vibroimpact.dynamics.shaken.statement import PlateMotion
-from vibroimpact.dynamics.shaken.steady import steady_modes
+from vibroimpact.dynamics.statement.plate_motion import PlateMotion
+from vibroimpact.dynamics.statement.steady import steady_modes
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 
 if TYPE_CHECKING:

@@ -14,15 +14,15 @@ from vibroimpact.bodies.ball import mean_density
 from vibroimpact.contact.law import InstantaneousLaw
 from vibroimpact.dynamics.core.drop_records import FreeFall
 from vibroimpact.dynamics.core.stop_rules import first_end
-from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.flight_in_fluid import FluidFlight, flight_of
+from vibroimpact.dynamics.motion.flight import Flight
+from vibroimpact.dynamics.motion.flight_in_fluid import FluidFlight, flight_of
+from vibroimpact.dynamics.motion.progress import fraction_done
+from vibroimpact.dynamics.motion.ride import Ride
+from vibroimpact.dynamics.motion.run_rules import OUTCOME_CODES, start_of, stop_rules_of
 from vibroimpact.dynamics.oblique.oblique_motion import motion_along
-from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
-from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.progress import fraction_done
-from vibroimpact.dynamics.run_rules import OUTCOME_CODES, start_of, stop_rules_of
 from vibroimpact.dynamics.shaken.recorded_drop import HardBounces
-from vibroimpact.dynamics.shaken.ride import Ride
+from vibroimpact.dynamics.statement.outcome import OUTCOMES, Outcome
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.drop_system import system_of
 from vibroimpact.dynamics.vibrating.fluid_motion import free_motion
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State

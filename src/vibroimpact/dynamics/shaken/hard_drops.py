@@ -1,4 +1,4 @@
-"""Hard spheres on a rigid plate that is shaken, from a problem to a response."""
+"""Hard spheres on a rigid plate that is shaken, from a problem to the end of their runs."""
 
 from __future__ import annotations
 
@@ -6,28 +6,28 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from vibroimpact.dynamics.bounce import BouncesOfSeveral
-from vibroimpact.dynamics.columns import (
+from vibroimpact.dynamics.motion.along import friction_parts
+from vibroimpact.dynamics.motion.bounce import BouncesOfSeveral
+from vibroimpact.dynamics.motion.columns import (
     CARRIED_IMPACT_COLUMNS,
     IMPACT_COLUMNS,
     OBLIQUE_IMPACT_COLUMNS,
     SHAKEN_IMPACT_COLUMNS,
 )
-from vibroimpact.dynamics.energy import close_ledger, ledger_holds
-from vibroimpact.dynamics.impact_rows import stacked_tables, table_of
-from vibroimpact.dynamics.oblique.state import friction_parts
-from vibroimpact.dynamics.outcome import Outcome
-from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.progress import of_several
-from vibroimpact.dynamics.response import Response
-from vibroimpact.dynamics.rest import Rest
+from vibroimpact.dynamics.motion.ended_run import EndedRun
+from vibroimpact.dynamics.motion.energy import close_ledger, ledger_holds
+from vibroimpact.dynamics.motion.impact_rows import stacked_tables, table_of
+from vibroimpact.dynamics.motion.progress import of_several
+from vibroimpact.dynamics.motion.rest import Rest
 from vibroimpact.dynamics.shaken.hard_drop import HardDrop
+from vibroimpact.dynamics.statement.outcome import Outcome
+from vibroimpact.dynamics.statement.problem import Problem
 
 
 def follow(
     problem: Problem, progress: Callable[[float], None] | None, *, keeps_bounces: bool
-) -> Response:
-    """Return the response of the drops of a problem, with arrays of a batch.
+) -> EndedRun:
+    """Follow the drops of a problem to the ends of their runs.
 
     Parameters
     ----------
@@ -44,11 +44,11 @@ def follow(
         drop = HardDrop(single)
         drop.follow(of_several(progress, number, len(alone)))
         drops.append(drop)
-    return _response_of(problem, drops, keeps_bounces=keeps_bounces)
+    return _ended_run(problem, drops, keeps_bounces=keeps_bounces)
 
 
-def _response_of(problem: Problem, drops: Sequence[HardDrop], *, keeps_bounces: bool) -> Response:
-    """Return the response of drops that have ended."""
+def _ended_run(problem: Problem, drops: Sequence[HardDrop], *, keeps_bounces: bool) -> EndedRun:
+    """Return drops that have ended."""
     ledgers = [drop.entries() for drop in drops]
     added = np.array([added for _, added in ledgers])
     entries = {name: np.array([entry[name] for entry, _ in ledgers]) for name in ledgers[0][0]}
@@ -71,7 +71,7 @@ def _response_of(problem: Problem, drops: Sequence[HardDrop], *, keeps_bounces: 
         lying=(None,) * len(drops),
     )
     columns = _columns_of(problem)
-    return Response(
+    return EndedRun(
         problem,
         stacked_tables([table_of(drop.rows, columns) for drop in drops], columns),
         energy,

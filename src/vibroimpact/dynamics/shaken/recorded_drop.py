@@ -12,13 +12,13 @@ from typing import overload
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.bounce import Bounce
-from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.flight_in_fluid import flight_of
+from vibroimpact.dynamics.motion.along import ImpulseAlong, Sphere, State
+from vibroimpact.dynamics.motion.bounce import Bounce
+from vibroimpact.dynamics.motion.flight import Flight
+from vibroimpact.dynamics.motion.flight_in_fluid import flight_of
+from vibroimpact.dynamics.motion.ride import Ride
 from vibroimpact.dynamics.oblique.oblique_motion import ObliqueMotion
-from vibroimpact.dynamics.oblique.state import ImpulseAlong, Sphere, State
-from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.shaken.ride import Ride
+from vibroimpact.dynamics.statement.problem import Problem
 
 _START, _GAP, _VELOCITY, _END, _RIDE_END, _FRICTION_LOST = range(6)
 _BEFORE = slice(6, 13)

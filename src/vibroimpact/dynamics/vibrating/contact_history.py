@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.collocation import Rule
+from vibroimpact.dynamics.motion.collocation import Rule
 from vibroimpact.dynamics.vibrating.local import LocalContact
 
 

@@ -20,10 +20,10 @@ from vibroimpact.dynamics.core.vibrating_records import (
     Now,
     VibratingDrop,
 )
-from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.law_coefficients import coefficients_of
-from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
-from vibroimpact.dynamics.run_rules import laws_of, start_of, stop_rules_of
+from vibroimpact.dynamics.motion.flight import Flight
+from vibroimpact.dynamics.motion.law_coefficients import coefficients_of
+from vibroimpact.dynamics.motion.run_rules import laws_of, start_of, stop_rules_of
+from vibroimpact.dynamics.statement.problem import MOST_IMPACTS, Problem
 from vibroimpact.dynamics.vibrating.drop_system import driven_state_of
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.recorded_motion import room_for_parts

@@ -8,9 +8,9 @@ import numpy as np
 
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.bodies.body import Body
-from vibroimpact.dynamics.oblique.statement import Oblique
-from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.shaken.steady import steady_surface
+from vibroimpact.dynamics.statement.oblique import Oblique
+from vibroimpact.dynamics.statement.problem import Problem
+from vibroimpact.dynamics.statement.steady import steady_surface
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""Drops whose bodies vibrate, from a problem to a response."""
+"""Drops whose bodies vibrate, from a problem to the end of their runs."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.bounce import BouncesOfSeveral
-from vibroimpact.dynamics.columns import (
+from vibroimpact.dynamics.core import drop_records as records
+from vibroimpact.dynamics.core import vibrating_records
+from vibroimpact.dynamics.motion.along import friction_parts
+from vibroimpact.dynamics.motion.bounce import BouncesOfSeveral
+from vibroimpact.dynamics.motion.columns import (
     CARRIED_IMPACT_COLUMNS,
     IMPACT_COLUMNS,
     OBLIQUE_IMPACT_COLUMNS,
     SHAKEN_IMPACT_COLUMNS,
     VIBRATING_IMPACT_COLUMNS,
 )
-from vibroimpact.dynamics.core import drop_records as records
-from vibroimpact.dynamics.core import vibrating_records
-from vibroimpact.dynamics.energy import close_ledger, ledger_holds
-from vibroimpact.dynamics.impact_rows import stacked_tables, table_of
-from vibroimpact.dynamics.oblique.state import friction_parts
-from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
-from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.progress import of_several
-from vibroimpact.dynamics.response import Response
-from vibroimpact.dynamics.rest import Rest
-from vibroimpact.dynamics.run_rules import OUTCOME_CODES
+from vibroimpact.dynamics.motion.ended_run import EndedRun
+from vibroimpact.dynamics.motion.energy import close_ledger, ledger_holds
+from vibroimpact.dynamics.motion.impact_rows import stacked_tables, table_of
+from vibroimpact.dynamics.motion.progress import of_several
+from vibroimpact.dynamics.motion.rest import Rest
+from vibroimpact.dynamics.motion.run_rules import OUTCOME_CODES
+from vibroimpact.dynamics.statement.outcome import OUTCOMES, Outcome
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.drop_system import slices_of, system_of
 from vibroimpact.dynamics.vibrating.followed_drop import FollowedDrop
 from vibroimpact.dynamics.vibrating.growth_of_differences import growth_of
@@ -51,8 +51,8 @@ class _Ended:
 
 def follow(
     problem: Problem, progress: Callable[[float], None] | None, *, keeps_bounces: bool
-) -> Response:
-    """Return the response of the drops of a problem, with arrays of a batch.
+) -> EndedRun:
+    """Follow the drops of a problem to the ends of their runs.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def follow(
         energy_in = _energy_at_start(drop)
         drop.follow(of_several(progress, number, len(alone)))
         ended.append(_ended(drop, energy_in, keeps_bounces))
-    return _response_of(problem, ended)
+    return _ended_run(problem, ended)
 
 
 def drop_of(problem: Problem) -> FollowedDrop:
@@ -235,8 +235,8 @@ def _vibration(drop: FollowedDrop) -> dict[str, float]:
     return {name: float(value) for name, value in entries.items()}
 
 
-def _response_of(problem: Problem, ended: Sequence[_Ended]) -> Response:
-    """Return the response of drops that have ended."""
+def _ended_run(problem: Problem, ended: Sequence[_Ended]) -> EndedRun:
+    """Return drops that have ended."""
     drops = [one.drop for one in ended]
     numbers = np.array([drop.drop.state for drop in drops])
     added = np.array([one.added for one in ended])
@@ -258,7 +258,7 @@ def _response_of(problem: Problem, ended: Sequence[_Ended]) -> Response:
     bounces = None
     if ended[0].recorded is not None:
         bounces = BouncesOfSeveral([one.recorded for one in ended if one.recorded is not None])
-    return Response(
+    return EndedRun(
         problem,
         stacked_tables([one.table for one in ended], _columns_of(problem)),
         energy,

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.flight_in_fluid import FluidFlight
+from vibroimpact.dynamics.motion.flight import Flight
+from vibroimpact.dynamics.motion.flight_in_fluid import FluidFlight
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 
 

@@ -26,10 +26,10 @@ from vibroimpact.dynamics.core.vibrating_records import (
     IN_CONTACT,
     NEAR_REST,
 )
-from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.progress import fraction_done
-from vibroimpact.dynamics.run_rules import start_of
+from vibroimpact.dynamics.motion.flight import Flight
+from vibroimpact.dynamics.motion.progress import fraction_done
+from vibroimpact.dynamics.motion.run_rules import start_of
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.contact_equilibrium import ContactEquilibrium
 from vibroimpact.dynamics.vibrating.contact_view import contact_view
 from vibroimpact.dynamics.vibrating.drop_at_start import (

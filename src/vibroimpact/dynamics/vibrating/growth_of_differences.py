@@ -18,7 +18,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.core.contact_records import RECOIL, STRETCH
 from vibroimpact.dynamics.core.drop_records import RELEASE_VELOCITY, TOUCH
 from vibroimpact.dynamics.core.peak import nodal_value_between
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.contact_view import contact_view
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact

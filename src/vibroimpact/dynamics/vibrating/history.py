@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.columns import MOTION_COLUMNS
-from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.shaken.statement import PlateMotion
-from vibroimpact.dynamics.shaken.steady import steady_phasors
+from vibroimpact.dynamics.motion.columns import MOTION_COLUMNS
+from vibroimpact.dynamics.statement.plate_motion import PlateMotion
+from vibroimpact.dynamics.statement.problem import Problem
+from vibroimpact.dynamics.statement.steady import steady_phasors
 from vibroimpact.dynamics.vibrating.drop_system import bases_of_plate, centre_of, slices_of
 from vibroimpact.dynamics.vibrating.fluid_motion import FluidMotion
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase

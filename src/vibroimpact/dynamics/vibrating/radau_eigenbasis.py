@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.arrays import Complex, Floats
-from vibroimpact.dynamics.collocation import Map, Rule, collocation_rule
 from vibroimpact.dynamics.core.records import MAPS, Bases, Basis
+from vibroimpact.dynamics.motion.collocation import Map, Rule, collocation_rule
 
 NODES_PER_STRETCH = 12
 """Nodes of a stretch: with more the eigenvectors of the integration matrix are too ill-conditioned,

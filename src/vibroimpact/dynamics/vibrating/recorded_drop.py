@@ -9,16 +9,23 @@ from typing import NamedTuple, overload
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.bounce import Bounce
-from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core.contact_records import FLIGHT
-from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.oblique.state import Sphere, State
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.motion.along import Sphere, State
+from vibroimpact.dynamics.motion.bounce import Bounce
+from vibroimpact.dynamics.motion.contact import Contact
+from vibroimpact.dynamics.motion.flight import Flight
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion
 from vibroimpact.dynamics.vibrating.recorded_motion import PiecesOfImpact, RecordedMotion
 from vibroimpact.dynamics.vibrating.sliding_contact import SlidingContact
+
+
+@dataclass(frozen=True, kw_only=True)
+class VibratingBounce(Bounce):
+    """A bounce of a drop whose bodies vibrate; `motion`: theirs in the flight."""
+
+    motion: FreeMotion
 
 
 class Flown(NamedTuple):
@@ -32,7 +39,7 @@ class Flown(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class RecordedDrop(Sequence[Bounce]):
+class RecordedDrop(Sequence[VibratingBounce]):
     """The flights and impacts of one drop.
 
     Parameters
@@ -59,23 +66,23 @@ class RecordedDrop(Sequence[Bounce]):
         return int(np.count_nonzero(self.recorded.parts.kind == FLIGHT))
 
     @overload
-    def __getitem__(self, index: int) -> Bounce: ...
+    def __getitem__(self, index: int) -> VibratingBounce: ...
 
     @overload
-    def __getitem__(self, index: slice) -> list[Bounce]: ...
+    def __getitem__(self, index: slice) -> list[VibratingBounce]: ...
 
-    def __getitem__(self, index: int | slice) -> Bounce | list[Bounce]:
+    def __getitem__(self, index: int | slice) -> VibratingBounce | list[VibratingBounce]:
         if isinstance(index, slice):
             return [self._bounce(number) for number in range(*index.indices(len(self)))]
         return self._bounce(range(len(self))[index])
 
-    def _bounce(self, number: int) -> Bounce:
+    def _bounce(self, number: int) -> VibratingBounce:
         flight, motion = self.flight(number)
         oblique = self.flown[number].along if self.flown else None
         if number == len(self.rows):
             end = np.array([self._end_of_flight(number)])
-            return Bounce(flight, end, motion=motion, oblique=oblique)
-        return Bounce(
+            return VibratingBounce(flight, end, motion=motion, oblique=oblique)
+        return VibratingBounce(
             flight=flight,
             flight_end=self.rows[number, [records.TOUCH]],
             contact=self._contact(number),

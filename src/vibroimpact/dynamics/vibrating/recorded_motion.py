@@ -11,7 +11,6 @@ import numpy as np
 
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.dynamics.contact import Piece
 from vibroimpact.dynamics.core.contact_records import (
     FLIGHT,
     LAWS,
@@ -23,6 +22,7 @@ from vibroimpact.dynamics.core.contact_records import (
 )
 from vibroimpact.dynamics.core.records import MAPS
 from vibroimpact.dynamics.core.surface_friction_records import NUMBERS, SlidingSphere
+from vibroimpact.dynamics.motion.contact import Piece
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import ContactView, contact_view
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
+from vibroimpact.dynamics.vibrating.recorded_drop import VibratingBounce
 from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
-
-if TYPE_CHECKING:
-    from vibroimpact.dynamics.bounce import Bounce
 
 _STRETCH_POINTS = 49
 _GAP_POINTS = 25
@@ -106,13 +103,13 @@ class VibratingSegment:
 
 
 def vibrating_timeline(
-    bounces: Sequence[Bounce], lying: RestMotion | None, end: float
+    bounces: Sequence[VibratingBounce], lying: RestMotion | None, end: float
 ) -> list[VibratingSegment]:
     """Return the history of one drop as segments in order.
 
     Parameters
     ----------
-    bounces : sequence of Bounce
+    bounces : sequence of VibratingBounce
         Its flights and visits.
     lying : RestMotion or None
         Its motion at rest, if it comes to rest.
@@ -120,12 +117,9 @@ def vibrating_timeline(
         End of the run [s].
     """
     segments: list[VibratingSegment] = []
-    first_motion = bounces[0].motion
-    assert first_motion is not None  # a body vibrates
-    lost_before = np.zeros(first_motion.system.number + 2)
+    lost_before = np.zeros(bounces[0].motion.system.number + 2)
     for bounce in bounces:
         touch = float(bounce.flight_end[0])
-        assert bounce.motion is not None  # a body vibrates
         start = float(bounce.flight.start[0])
         segments.append(VibratingSegment(start, touch, bounce.motion, lost_before))
         lost_before = segments[-1].lost_after

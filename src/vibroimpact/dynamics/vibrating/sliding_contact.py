@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.motion.along import Sphere, State, state_after
 from vibroimpact.dynamics.oblique.oblique_motion import ObliqueMotion
-from vibroimpact.dynamics.oblique.state import Sphere, State, state_after
 from vibroimpact.dynamics.vibrating.recorded_motion import RecordedMotion
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.surface_friction import SlidingStretch

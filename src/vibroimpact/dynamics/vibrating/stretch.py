@@ -11,10 +11,10 @@ from functools import cached_property
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.core.path import stretch_path
 from vibroimpact.dynamics.core.peak import peak_of_force
 from vibroimpact.dynamics.core.records import Path
+from vibroimpact.dynamics.motion.collocation import Rule
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import ContactView
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State

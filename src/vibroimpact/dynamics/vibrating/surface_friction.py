@@ -8,14 +8,14 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.friction.law import CompliantFriction
-from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.core import surface_friction_records as records
 from vibroimpact.dynamics.core.surface_friction_motions import slowing
 from vibroimpact.dynamics.core.surface_friction_records import SlidingSphere
 from vibroimpact.dynamics.core.tangential_history import TangentialHistory
-from vibroimpact.dynamics.oblique.state import Sphere, State
+from vibroimpact.dynamics.motion.along import Sphere, State
+from vibroimpact.dynamics.motion.collocation import Rule
 from vibroimpact.dynamics.oblique.tangential_history import tangential_history
-from vibroimpact.dynamics.tolerance import DEFAULT_TOLERANCE
+from vibroimpact.dynamics.statement.tolerance import DEFAULT_TOLERANCE
 
 _LONGEST_STRETCH = 0.03  # of the duration of a contact, at the default tolerance
 _ORDER = 4  # of the error in the length of stretches, about

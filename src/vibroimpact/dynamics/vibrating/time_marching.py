@@ -20,7 +20,7 @@ from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.core.contact_records import Attempt, Manner
 from vibroimpact.dynamics.core.events import NO_EVENT, NO_PUSH, NO_TENSION, PARTED, TURN
 from vibroimpact.dynamics.core.records import Event
-from vibroimpact.dynamics.impact_conditions import undamped_depths
+from vibroimpact.dynamics.motion.impact_conditions import undamped_depths
 from vibroimpact.dynamics.vibrating.active_contact import (
     ActiveContact,
     ContactDefinition,

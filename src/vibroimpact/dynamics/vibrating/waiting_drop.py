@@ -19,12 +19,12 @@ from vibroimpact.dynamics.core.drop_records import FreeFall
 from vibroimpact.dynamics.core.stop_rules import first_end
 from vibroimpact.dynamics.core.surface_friction_records import SlidingSphere
 from vibroimpact.dynamics.core.vibrating_drops import write_flight
-from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.flight_in_fluid import FluidFlight, flight_of
-from vibroimpact.dynamics.impact_conditions import impact_conditions_of
-from vibroimpact.dynamics.law_coefficients import coefficients_of
+from vibroimpact.dynamics.motion.flight import Flight
+from vibroimpact.dynamics.motion.flight_in_fluid import FluidFlight, flight_of
+from vibroimpact.dynamics.motion.impact_conditions import impact_conditions_of
+from vibroimpact.dynamics.motion.law_coefficients import coefficients_of
 from vibroimpact.dynamics.oblique.oblique_motion import ObliqueMotion, motion_along
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.drop_system import system_of
 from vibroimpact.dynamics.vibrating.fluid_motion import free_motion
 from vibroimpact.dynamics.vibrating.followed_drop import FollowedDrop

@@ -15,7 +15,7 @@ from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
 from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
 from vibroimpact.contact.registry import contact_laws
-from vibroimpact.dynamics.oblique.statement import Oblique
+from vibroimpact.dynamics.statement.oblique import Oblique
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import approach_speeds, first_contact, shared_notes
 from vibroimpact.exporting.deck import number, render_deck

@@ -15,8 +15,8 @@ from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
 from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
 from vibroimpact.contact.laws.tsuji import Tsuji
-from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.restitution import achieved_restitution
+from vibroimpact.dynamics.statement.oblique import Oblique
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import (
     approach_speeds,

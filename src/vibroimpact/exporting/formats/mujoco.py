@@ -9,8 +9,8 @@ from collections.abc import Mapping
 from xml.sax.saxutils import quoteattr
 
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
-from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.restitution import achieved_restitution
+from vibroimpact.dynamics.statement.oblique import Oblique
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import (
     approach_speeds,

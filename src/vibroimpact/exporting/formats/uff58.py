@@ -16,7 +16,7 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.columns import OBLIQUE_HISTORY_COLUMNS
+from vibroimpact.dynamics.motion.columns import OBLIQUE_HISTORY_COLUMNS
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, file_name

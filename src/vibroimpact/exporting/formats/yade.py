@@ -13,8 +13,8 @@ from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw, damping_ratio_from_
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.tsuji import Tsuji
-from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
+from vibroimpact.dynamics.statement.oblique import Oblique
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import (
     approach_speeds,

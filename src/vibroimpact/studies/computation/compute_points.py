@@ -17,11 +17,11 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.rigid.oblique import is_oblique
 from vibroimpact.cases.rigid.rigid_problem import deforms, rigid_problem
 from vibroimpact.dynamics.first_touch import first_touch
-from vibroimpact.dynamics.outcome import Outcome
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
-from vibroimpact.dynamics.sensors.sensor import sample_count
+from vibroimpact.dynamics.sensors.instruments.sensor import sample_count
 from vibroimpact.dynamics.simulate import simulate_together
+from vibroimpact.dynamics.statement.outcome import Outcome
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.tabulate import tabulate
 from vibroimpact.errors import ComputationError, InputError, lines_of
 from vibroimpact.studies.computation.chunk_file import ChunkResult

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.cases.limits.limit import limits
-from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
+from vibroimpact.dynamics.statement.outcome import OUTCOMES, Outcome
 from vibroimpact.files.atomic_write import atomic_file
 from vibroimpact.studies.computation.chunk_file import ChunkResult, chunk_layout, read_chunk
 from vibroimpact.studies.computation.ledger import Span

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from vibroimpact._version import __version__
 from vibroimpact.cases.limits.limit import limits
-from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
+from vibroimpact.dynamics.statement.outcome import OUTCOMES, Outcome
 from vibroimpact.files.atomic_write import atomic_file, write_file
 from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, sealed
 from vibroimpact.files.hdf5 import CHECKED, chunk_shape, new_array, new_hdf5

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
-from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
+from vibroimpact.dynamics.motion.columns import ALL_IMPACT_COLUMNS
 
 
 class PeakVariable(NamedTuple):

@@ -17,7 +17,7 @@ from vibroimpact.cases.fields.section import read_table
 from vibroimpact.cases.fields.size_limits import MOST_ITEMS, check_bounds, check_count
 from vibroimpact.cases.reader import load_table, prefix_errors
 from vibroimpact.cases.sections.keys import check_laws, find_quantity, holds_keys, with_values
-from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
+from vibroimpact.dynamics.motion.columns import ALL_IMPACT_COLUMNS
 from vibroimpact.errors import InputError, listed
 from vibroimpact.quoting import quoted, shortened
 from vibroimpact.studies.planning.axes import Axis, Listed, Normal, Values

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.dynamics.outcome import Outcome
+from vibroimpact.dynamics.statement.outcome import Outcome
 from vibroimpact.studies.computation.study import Study
 from vibroimpact.studies.planning.drop_variables import OUTCOME, PEAK_TABLE, SENSOR_PEAK
 from vibroimpact.studies.report.percentiles import Spread, spread_of

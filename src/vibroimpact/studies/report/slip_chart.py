@@ -13,7 +13,7 @@ from vibroimpact.cases.rigid.oblique import friction_law_of
 from vibroimpact.cases.rigid.rigid_problem import rigid_problem
 from vibroimpact.charts.chart import Chart
 from vibroimpact.charts.marks import Points
-from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
+from vibroimpact.dynamics.motion.columns import OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.runs.slip_map import moduli_ratio, slip_map, slips
 from vibroimpact.studies.computation.study import Study
 from vibroimpact.studies.planning.swept_keys import case_at

@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.arrays import Bools, Complex, Floats
 from vibroimpact.cases.sections.schema import CaseTable
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.errors import InputError
 from vibroimpact.signals.decay.responses import common_lines, modes_in_responses
 from vibroimpact.signals.frac import frac

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from vibroimpact.arrays import Complex, Floats
-from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.drop_system import bases_of_plate
 from vibroimpact.identification.plate import compliances_of, shapes_of
 

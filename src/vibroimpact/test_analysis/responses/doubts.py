@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.quoting import quoted
 from vibroimpact.signals.decay.find import DecayMode
 from vibroimpact.signals.frequency_response import FrequencyResponse

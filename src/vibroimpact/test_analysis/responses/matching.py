@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.errors import InputError, did_you_mean, listed
 from vibroimpact.quoting import quoted
 from vibroimpact.signals.frequency_response import DegreeOfFreedom, FrequencyResponse

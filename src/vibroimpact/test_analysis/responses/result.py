@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.cases.sections.schema import CaseTable
-from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.report.reported import Reported
 from vibroimpact.test_analysis.mode_pairs import ModePair
 

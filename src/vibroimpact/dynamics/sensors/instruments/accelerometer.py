@@ -11,7 +11,7 @@ from vibroimpact.dynamics.sensors.instruments.instrument import (
     InstrumentInCase,
     Quantity,
 )
-from vibroimpact.dynamics.sensors.pole_pairs import Section
+from vibroimpact.dynamics.sensors.instruments.pole_pairs import Section
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import MISSING, dataclass, fields
 from typing import ClassVar, Literal, Protocol, cast
 
-from vibroimpact.dynamics.sensors.pole_pairs import Section
+from vibroimpact.dynamics.sensors.instruments.pole_pairs import Section
 
 Quantity = Literal[
     "acceleration", "velocity", "displacement", "voltage", "strain", "pressure", "force"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vibroimpact.dynamics.sensors.instruments.instrument import InstrumentInCase
-from vibroimpact.dynamics.sensors.pole_pairs import Section
+from vibroimpact.dynamics.sensors.instruments.pole_pairs import Section
 
 
 @dataclass(frozen=True)

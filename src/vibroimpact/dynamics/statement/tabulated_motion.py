@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.shaken.statement import PlateMotion
+from vibroimpact.dynamics.statement.plate_motion import PlateMotion
 
 # of the largest acceleration: what all harmonic motions that are left out may add up to
 _NEGLIGIBLE = 1e-6

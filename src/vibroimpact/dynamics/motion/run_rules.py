@@ -8,8 +8,8 @@ from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core import stop_rules
 from vibroimpact.dynamics.core.drop_records import StopRules
-from vibroimpact.dynamics.outcome import Outcome
-from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
+from vibroimpact.dynamics.statement.outcome import Outcome
+from vibroimpact.dynamics.statement.problem import MOST_IMPACTS, Problem
 
 _APART = 4e-15  # of the amplitude of a shaken plate: the rounding error of its place
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.oblique.state import Sphere, State
+from vibroimpact.dynamics.motion.along import Sphere, State
 
 
 @dataclass(frozen=True)

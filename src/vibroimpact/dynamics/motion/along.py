@@ -12,7 +12,7 @@ import numpy as np
 from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.dynamics.core.sphere_records import RubbedSphere
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.statement.problem import Problem
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibroimpact.arrays import Complex, Floats
-from vibroimpact.dynamics.shaken.statement import PlateMotion
+from vibroimpact.dynamics.statement.plate_motion import PlateMotion
 
 if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices

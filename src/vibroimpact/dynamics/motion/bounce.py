@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.contact import Contact
-from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.oblique.state import ContactAlong, Sphere, State
-from vibroimpact.dynamics.shaken.ride import Ride
-
-if TYPE_CHECKING:  # a drop of rigid bodies does not load what vibrates
-    from vibroimpact.dynamics.vibrating.linear_system import FreeMotion
+from vibroimpact.dynamics.motion.along import ContactAlong, Sphere, State
+from vibroimpact.dynamics.motion.contact import Contact
+from vibroimpact.dynamics.motion.flight import Flight
+from vibroimpact.dynamics.motion.ride import Ride
 
 
 @dataclass(frozen=True)
@@ -21,7 +18,7 @@ class Bounce:
     """A flight of one drop and the contact that follows it.
 
     `flight_end` [s] (1,). `contact`: None for a flight that ends the run, and for a law without a
-    force. `motion`: free motion of the bodies in flight, where one vibrates. `oblique`: the sphere
+    force. `oblique`: the sphere
     and its motion along the plate at the start of the flight, and `along` that in the contact,
     where there is any. `ride`: on a shaken plate after an impact of a law without a force.
     """
@@ -29,7 +26,6 @@ class Bounce:
     flight: Flight
     flight_end: Floats
     contact: Contact | None = None
-    motion: FreeMotion | None = None
     oblique: tuple[Sphere, State] | None = None
     along: ContactAlong | None = None
     ride: Ride | None = None

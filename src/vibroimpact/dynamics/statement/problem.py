@@ -18,14 +18,14 @@ from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.contact.speed_function import BySpeed, held
-from vibroimpact.dynamics.air import Air, check_thin
-from vibroimpact.dynamics.fluid import Fluid
-from vibroimpact.dynamics.liquid import Liquid, check_sinks
-from vibroimpact.dynamics.oblique.statement import Oblique
-from vibroimpact.dynamics.sensors.sensor import Sensor
-from vibroimpact.dynamics.shaken.statement import PlateMotion
-from vibroimpact.dynamics.shaken.steady import steady_phasors
-from vibroimpact.dynamics.tolerance import DEFAULT_TOLERANCE, check_tolerance
+from vibroimpact.dynamics.fluids.air import Air, check_thin
+from vibroimpact.dynamics.fluids.fluid import Fluid
+from vibroimpact.dynamics.fluids.liquid import Liquid, check_sinks
+from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
+from vibroimpact.dynamics.statement.oblique import Oblique
+from vibroimpact.dynamics.statement.plate_motion import PlateMotion
+from vibroimpact.dynamics.statement.steady import steady_phasors
+from vibroimpact.dynamics.statement.tolerance import DEFAULT_TOLERANCE, check_tolerance
 from vibroimpact.errors import InputError
 from vibroimpact.resolved_case import ResolvedCase
 

@@ -6,8 +6,8 @@ In flight the sphere is accelerated by
 
 .. math:: \dot v = \frac{\rho - \rho_f}{\rho + \tfrac12 \rho_f}\, g - a(v)
 
-with the drag a of `vibroimpact.dynamics.fluid`, and half the displaced mass moves along, as in
-unbounded liquid without viscosity.
+with the drag a of `vibroimpact.dynamics.fluids.fluid`, and half the displaced mass moves along, as
+in unbounded liquid without viscosity.
 
 The film has to be pressed out before sphere and plate touch, and drawn in as they part. What is
 left of the restitution in air depends on the Stokes number alone, the inertia of the sphere over
@@ -23,7 +23,7 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.contact.law import ContactLaw
-from vibroimpact.dynamics.fluid import Fluid
+from vibroimpact.dynamics.fluids.fluid import Fluid
 from vibroimpact.errors import InputError
 
 WATER_DENSITY, WATER_VISCOSITY = 998.2, 1.002e-3

@@ -2,7 +2,7 @@ r"""Flight through air or a liquid at rest, whose drag slows the sphere down.
 
 With the velocity v in one dimension or three, the acceleration g at which the sphere would fall
 without drag, which is less than gravity in a liquid, and the drag a of
-`vibroimpact.dynamics.fluid`,
+`vibroimpact.dynamics.fluids.fluid`,
 
 .. math:: \dot v = g - a(|v|)\, v / |v|
 
@@ -23,13 +23,13 @@ import numpy as np
 
 from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.bodies.ball import mean_density
-from vibroimpact.dynamics.collocation import collocation_rule
 from vibroimpact.dynamics.core import fall
 from vibroimpact.dynamics.core.fall_records import Corners, Falling, FallRule, FallRules, Moving
-from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.fluid import Fluid
-from vibroimpact.dynamics.oblique.state import Sphere, State
-from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.fluids.fluid import Fluid
+from vibroimpact.dynamics.motion.along import Sphere, State
+from vibroimpact.dynamics.motion.collocation import collocation_rule
+from vibroimpact.dynamics.motion.flight import Flight
+from vibroimpact.dynamics.statement.problem import Problem
 
 _NODES = 12
 _ROOT = 2  # of the time from the top, in which the motion is smooth

@@ -11,7 +11,7 @@ from vibroimpact.compiled import law_addresses
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.core.depths import write_undamped_depths
-from vibroimpact.dynamics.law_coefficients import coefficients_of
+from vibroimpact.dynamics.motion.law_coefficients import coefficients_of
 
 
 @dataclass(frozen=True)

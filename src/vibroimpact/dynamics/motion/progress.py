@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
+from vibroimpact.dynamics.statement.problem import MOST_IMPACTS, Problem
 
 
 def fraction_done(

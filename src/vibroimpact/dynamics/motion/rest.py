@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
-
-if TYPE_CHECKING:  # a drop of rigid bodies does not load what vibrates
-    from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 
 
 @dataclass(frozen=True)
@@ -22,7 +19,7 @@ class Rest:
     the remaining bounces, which are not simulated [s]. `sag`: static indentation [m]. `stored`:
     energy in it [J]. `written_off`: energy that the sphere still had [J]. Where a body vibrates,
     `left`: what the sphere and what it lies on still hold above their equilibrium then [J], and
-    `lying`: how they move on.
+    `lying`: how they move on, a `RestMotion`, or None.
     """
 
     speed: Floats
@@ -31,7 +28,7 @@ class Rest:
     stored: Floats
     written_off: Floats
     left: Floats
-    lying: tuple[RestMotion | None, ...]
+    lying: tuple[Any, ...]
 
     def take(self, index: int) -> Rest:
         """Return the rest of one drop, as that of a batch of one."""

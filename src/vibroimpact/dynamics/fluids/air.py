@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.dynamics.fluid import Fluid
+from vibroimpact.dynamics.fluids.fluid import Fluid
 from vibroimpact.errors import InputError
 
 AIR_DENSITY, AIR_VISCOSITY = 1.2, 1.81e-5

@@ -22,9 +22,9 @@ from vibroimpact.dynamics.core.resisted_contact import ResistedPath, resisted_pa
 from vibroimpact.dynamics.core.rubbing import SlidPath, rub_pairs, slid_path, solved_path
 from vibroimpact.dynamics.core.sphere_contact import write_states_along
 from vibroimpact.dynamics.core.sphere_records import RubbedSphere, SphereState
-from vibroimpact.dynamics.impact_conditions import ImpactConditions
-from vibroimpact.dynamics.law_coefficients import coefficients_of
-from vibroimpact.dynamics.oblique.state import Sphere, State, energy_taken
+from vibroimpact.dynamics.motion.along import Sphere, State, energy_taken
+from vibroimpact.dynamics.motion.impact_conditions import ImpactConditions
+from vibroimpact.dynamics.motion.law_coefficients import coefficients_of
 
 # of each phase of a contact at the default tolerance: the slip velocity at its end is within 2e-4
 # of that at first touch

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.shaken.statement import PlateMotion
-from vibroimpact.dynamics.shaken.steady import steady_phasors
+from vibroimpact.dynamics.statement.plate_motion import PlateMotion
+from vibroimpact.dynamics.statement.steady import steady_phasors
 
 _POINTS_PER_RADIAN = 8.0  # of a grid, of the fastest harmonic motion
 _MOST_POINTS = 4001

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
-from vibroimpact.dynamics.sensors.electronics import Amplifier, Converter, seeds
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.instruments.electronics import Amplifier, Converter, seeds
 from vibroimpact.dynamics.sensors.instruments.instrument import (
     MOTIONS,
     UNITS,
@@ -15,7 +15,7 @@ from vibroimpact.dynamics.sensors.instruments.instrument import (
     Quantity,
     Subject,
 )
-from vibroimpact.dynamics.sensors.pole_pairs import Section
+from vibroimpact.dynamics.sensors.instruments.pole_pairs import Section
 from vibroimpact.errors import InputError, did_you_mean
 
 Filter = Literal["sigma-delta", "butterworth", "none"]

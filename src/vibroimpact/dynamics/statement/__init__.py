@@ -1,0 +1,1 @@
+"""What is asked of a simulation: bodies, laws, the drop and its surroundings, and when it ends."""
