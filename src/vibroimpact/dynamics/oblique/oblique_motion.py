@@ -174,8 +174,3 @@ class ObliqueMotion:
             "rotation_J": float(rotation[0]),
             "friction_J": self.lost,
         }
-
-
-def motion_along(problem: Problem) -> ObliqueMotion | None:
-    """Return the motion along the plate of a single drop, if there is any."""
-    return None if problem.oblique is None else ObliqueMotion(problem)

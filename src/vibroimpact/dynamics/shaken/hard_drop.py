@@ -12,14 +12,12 @@ import numpy as np
 
 from vibroimpact.bodies.ball import mean_density
 from vibroimpact.contact.law import InstantaneousLaw
-from vibroimpact.dynamics.core.drop_records import FreeFall
-from vibroimpact.dynamics.core.stop_rules import first_end
+from vibroimpact.dynamics.core.drop_records import AT_TOUCH
 from vibroimpact.dynamics.motion.flight import Flight
-from vibroimpact.dynamics.motion.flight_in_fluid import FluidFlight, flight_of
 from vibroimpact.dynamics.motion.progress import fraction_done
 from vibroimpact.dynamics.motion.ride import Ride
-from vibroimpact.dynamics.motion.run_rules import OUTCOME_CODES, start_of, stop_rules_of
-from vibroimpact.dynamics.oblique.oblique_motion import motion_along
+from vibroimpact.dynamics.motion.run_rules import OUTCOME_CODES, start_of
+from vibroimpact.dynamics.oblique.told_flights import ToldFlights
 from vibroimpact.dynamics.shaken.recorded_drop import HardBounces
 from vibroimpact.dynamics.statement.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.statement.problem import Problem
@@ -41,7 +39,7 @@ class HardDrop:
     `time`, `gap`, `velocity`: where it is [s], [m], upwards [m/s]. `rows`: its impacts, by the
     columns of their table. `bounces`: its flights and impacts. `outcome`, `end_time`: how and when
     its run ended. `rest_time`: when it has come to ride until then, else NaN. `dissipated`,
-    `to_fluid`, `work`: energy lost in impacts and to a fluid, and work of the drive [J].
+    `work`: energy lost in impacts, and work of the drive [J].
 
     Parameters
     ----------
@@ -56,20 +54,19 @@ class HardDrop:
         self.gravity = float(problem.net_gravity)
         self.time = 0.0
         self.gap, self.velocity = start_of(problem)
-        self.oblique = motion_along(problem)
+        self.told = ToldFlights(problem, self.velocity)
+        self.oblique = self.told.oblique
         self.rows: list[dict[str, float]] = []
         self.bounces = HardBounces(problem)
         self.outcome: Outcome | None = None
         self.end_time = np.nan
         self.rest_time = np.nan
         self.dissipated = 0.0
-        self.to_fluid = 0.0
         self.work = 0.0
         self._rides_since = np.nan  # until the run ends
         self._system = system_of(problem, self.mass, self.gravity)
-        self._stops = stop_rules_of(problem)
-        self.liquid_at_start = self.energy_of_liquid()
-        self.energy_in = self._energy() + self.liquid_at_start
+        fall = self.mass * (0.5 * self.velocity**2 + self.gravity * self.gap)
+        self.energy_in = fall + self.told.energy_at_start()
         if problem.rest_speed is None:
             _, speed = self._flight().touch(np.zeros(1))
             self.rest_speed = _LEAST_REST_SPEED * float(speed[0])
@@ -111,42 +108,22 @@ class HardDrop:
 
     def _flight(self) -> Flight:
         """Return the flight that the sphere is about to make."""
-        along = np.zeros((0, 1))
-        if self.oblique is not None:
-            along = self.oblique.state.velocity
-        return flight_of(
-            self.problem,
-            np.array([self.time]),
-            np.array([self.gap]),
-            np.array([self.velocity]),
-            along,
-        )
+        return self.told.next(self.time, self.gap, self.velocity)
 
     def _fly(self, flight: Flight) -> None:
         """Let the sphere fly to its next touch, or until a rule ends its run."""
         touch = self.time + self._time_to_touch(flight)
-        is_beside = False
-        if self.oblique is not None:
-            is_beside = self.oblique.is_beside(flight, touch)
-        fall = FreeFall(self.time, float(flight.apex()[0][0]), touch, 0.0, is_beside)
-        end, ending = first_end(self._stops, fall, len(self.rows))
-        if touch >= end:
-            self._end_by(OUTCOMES[OUTCOME_CODES[ending]], end)
-        time = np.array([min(end, touch)])
-        self.bounces.begin(flight, self.oblique, float(time[0]))
-        if self.oblique is not None:
-            self.oblique.fly(flight, time)
-        gap, velocity = flight.at(time)
+        time, phase = self.told.end_of(flight, touch, len(self.rows))
+        self.bounces.begin(flight, self.oblique, time)
+        row = self.told.fly(flight, time)
+        gap, velocity = flight.at(np.array([time]))
         self.gap = float(gap[0])
         self.velocity = float(velocity[0])
-        self.time = float(time[0])
-        row: dict[str, float] = {}
-        if isinstance(flight, FluidFlight):
-            assert self.problem.fluid is not None
-            self.to_fluid += self.mass * float(flight.given(time)[0])
-            row[f"{self.problem.fluid.key}_lost_J"] = self.mass * float(flight.lost(time)[0])
-        if self.outcome is None:
+        self.time = time
+        if phase == AT_TOUCH:
             self.rows.append(row)
+        else:
+            self._end_by(OUTCOMES[OUTCOME_CODES[phase]], time)
 
     def _time_to_touch(self, flight: Flight) -> float:
         """Return the time from the start of a flight to its touch [s]."""
@@ -349,28 +326,12 @@ class HardDrop:
         self.work += self._carried(ride, self.end_time) - self._carried(ride, self._rides_since)
         self.gap, self.velocity, _ = self._surface(self.end_time)
 
-    def _energy(self) -> float:
-        """Return the kinetic and potential energy [J]."""
-        energy = self.mass * (0.5 * self.velocity**2 + self.gravity * self.gap)
-        if self.oblique is not None:
-            energies = self.oblique.energies()
-            energy += energies["kinetic_J"] + energies["rotation_J"]
-        return energy
-
-    def energy_of_liquid(self) -> float:
-        """Return the kinetic energy of the liquid that moves along with the sphere [J]."""
-        square = self.velocity**2
-        if self.oblique is not None:
-            square += float((self.oblique.state.velocity**2).sum())
-        return 0.5 * self.mass * (float(self.problem.flight_inertia) - 1.0) * square
-
     def entries(self) -> tuple[dict[str, float], float]:
         """Return the entries of the energy ledger at the end [J], and the energy that gravity and
         the drive added [J].
         """
-        liquid = self.energy_of_liquid()
         entries = {
-            "kinetic_J": 0.5 * self.mass * self.velocity**2 + liquid,
+            "kinetic_J": 0.5 * self.mass * self.velocity**2,
             "potential_J": self.mass * self.gravity * self.gap,
             "contact_elastic_J": 0.0,
             "contact_dissipated_J": self.dissipated,
@@ -378,13 +339,9 @@ class HardDrop:
             "written_off_at_rest_J": 0.0,
             "drive_J": -self.work,
         }
-        added = max(self.work, 0.0)
-        if self.oblique is not None:
-            along = self.oblique.energies()
-            added += max(-along["potential_J"], 0.0)  # what gravity did down the plate
-            for name, value in along.items():
-                entries[name] = entries.get(name, 0.0) + value
-        if self.problem.fluid is not None:
-            given = self.to_fluid + self.liquid_at_start - liquid
-            entries[f"{self.problem.fluid.key}_J"] = given
+        further = self.told.entries(self.velocity)
+        for name, value in further.items():
+            entries[name] = entries.get(name, 0.0) + value
+        # what gravity did down the plate
+        added = max(self.work, 0.0) + max(-further.get("potential_J", 0.0), 0.0)
         return entries, added

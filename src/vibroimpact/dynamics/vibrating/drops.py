@@ -99,13 +99,10 @@ def _ended(drop: FollowedDrop, energy_in: float, keeps_bounces: bool) -> _Ended:
     end_time = float(drop.drop.state[records.END_TIME])
     if drop.is_at_rest and problem.duration is not None:
         end_time = max(end_time, problem.duration)
-    along: dict[str, float] = {}
-    if isinstance(drop, WaitingDrop) and drop.oblique is not None:
-        end_time = drop.lie_along(end_time)
-        along = drop.energies_along()
+    end_time = drop.end_along(end_time)
     if drop.is_at_rest:
         drop.lie_until(end_time)
-    energy, added = _entries(drop, along)
+    energy, added = _entries(drop)
     recorded = None
     if keeps_bounces or _is_sensitive(problem):
         recorded = drop.recording()
@@ -168,53 +165,46 @@ _FURTHER_COLUMNS = {
 
 
 def _energy_at_start(drop: FollowedDrop) -> float:
-    """Return the kinetic and potential energy at the start [J], with that of liquid moved along."""
+    """Return the kinetic and potential energy at the start [J]."""
     numbers = drop.drop.state
     velocity = float(numbers[records.VELOCITY])
     potential = float(numbers[records.GRAVITY] * numbers[records.GAP])
     energy = float(numbers[records.MASS]) * (0.5 * velocity**2 + potential)
-    return energy + drop.energy_of_liquid() + drop.energy_along()
+    return energy + drop.energy_at_start()
 
 
-def _entries(drop: FollowedDrop, along: dict[str, float]) -> tuple[dict[str, float], float]:
+def _entries(drop: FollowedDrop) -> tuple[dict[str, float], float]:
     """Return the entries of the energy ledger at the end [J], and the energy that gravity and
     adhesion added to that of the start [J].
-
-    `along`: the entries for the motion along the plate.
     """
-    problem = drop.problem
     numbers = drop.drop.state
     mass = float(numbers[records.MASS])
     gravity = float(numbers[records.GRAVITY])
     stored = float(numbers[records.STORED])
     gap, velocity = drop.centre()
-    liquid = drop.energy_of_liquid()
-    vibration = _vibration(drop)
-    # the stored energy is negative where it sticks
-    added = mass * gravity * float(numbers[records.DEEPEST]) + max(-stored, 0.0)
-    if along:
-        added += max(-along["potential_J"], 0.0)  # what gravity did down the plate
-    if problem.motion is not None:
-        vibration = {"drive_J": 0.0, **vibration}
-        added += max(-vibration["drive_J"], 0.0)
     entries = {
-        "kinetic_J": 0.5 * mass * velocity**2 + liquid + along.pop("kinetic_J", 0.0),
-        "potential_J": mass * gravity * gap + along.pop("potential_J", 0.0),
-        "contact_elastic_J": stored + vibration.pop("local_J"),
-        "contact_dissipated_J": float(numbers[records.DISSIPATED])
-        + vibration.pop("local_damping_J"),
+        "kinetic_J": 0.5 * mass * velocity**2,
+        "potential_J": mass * gravity * gap,
+        "contact_elastic_J": stored,
+        "contact_dissipated_J": float(numbers[records.DISSIPATED]),
         "plastic_work_J": float(numbers[records.PLASTIC]),
         "written_off_at_rest_J": float(numbers[records.WRITTEN_OFF]),
-        **vibration,
-        **along,
     }
-    if problem.fluid is not None:
-        entries[f"{problem.fluid.key}_J"] = drop.energy_to_fluid()
+    if drop.problem.motion is not None:
+        entries["drive_J"] = 0.0
+    further = drop.further_entries()
+    for more in (_vibration(drop), further):
+        for name, value in more.items():
+            entries[name] = entries.get(name, 0.0) + value
+    # the stored energy is negative where it sticks
+    added = mass * gravity * float(numbers[records.DEEPEST]) + max(-stored, 0.0)
+    added += max(-further.get("potential_J", 0.0), 0.0)  # what gravity did down the plate
+    added += max(-entries.get("drive_J", 0.0), 0.0)
     return entries, added
 
 
 def _vibration(drop: FollowedDrop) -> dict[str, float]:
-    """Return the entries of what vibrates [J]; those of local elements are apart."""
+    """Return the entries of what vibrates [J]; local elements belong to the contact."""
     system = drop.system
     state = drop.state
     lost = drop.drop.lost
@@ -227,8 +217,8 @@ def _vibration(drop: FollowedDrop) -> dict[str, float]:
         "plate_kinetic_J": kinetic[rigid].sum() + kinetic[plate].sum(),
         "plate_strain_J": strain[plate].sum(),
         "plate_damping_J": lost[:-1][plate].sum(),
-        "local_J": system.local_energy(state),
-        "local_damping_J": lost[-1],
+        "contact_elastic_J": system.local_energy(state),
+        "contact_dissipated_J": lost[-1],
     }
     if system.driven:
         entries["drive_J"] = lost[-1 - system.driven : -1].sum()

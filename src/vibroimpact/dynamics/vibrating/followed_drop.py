@@ -301,17 +301,17 @@ class FollowedDrop:
             rows=self.drop.rows[: self.impacts].copy(),
         )
 
-    def energy_of_liquid(self) -> float:
-        """Return the kinetic energy of the liquid that moves along with the sphere [J]."""
+    def energy_at_start(self) -> float:
+        """Return the energy beside that of the fall [J], before any flight."""
         return 0.0
 
-    def energy_along(self) -> float:
-        """Return the kinetic energy along the plate and of the spin [J]."""
-        return 0.0
+    def end_along(self, end: float) -> float:
+        """Return the end of the run [s], which a motion along the plate may end before."""
+        return end
 
-    def energy_to_fluid(self) -> float:
-        """Return the energy that a fluid has taken [J]."""
-        return 0.0
+    def further_entries(self) -> dict[str, float]:
+        """Return what is added to the entries of the energy ledger [J]."""
+        return {}
 
     def taken_by_friction(self) -> tuple[float, float]:
         """Return the energy that friction took, and the part of it in microslip [J]."""

@@ -15,15 +15,14 @@ from vibroimpact.bodies.ball import mean_density
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.core import drop_records as records
-from vibroimpact.dynamics.core.drop_records import FreeFall
-from vibroimpact.dynamics.core.stop_rules import first_end
 from vibroimpact.dynamics.core.surface_friction_records import SlidingSphere
 from vibroimpact.dynamics.core.vibrating_drops import write_flight
 from vibroimpact.dynamics.motion.flight import Flight
-from vibroimpact.dynamics.motion.flight_in_fluid import FluidFlight, flight_of
 from vibroimpact.dynamics.motion.impact_conditions import impact_conditions_of
 from vibroimpact.dynamics.motion.law_coefficients import coefficients_of
-from vibroimpact.dynamics.oblique.oblique_motion import ObliqueMotion, motion_along
+from vibroimpact.dynamics.motion.run_rules import start_of
+from vibroimpact.dynamics.oblique.oblique_motion import ObliqueMotion
+from vibroimpact.dynamics.oblique.told_flights import ToldFlights
 from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.drop_system import system_of
 from vibroimpact.dynamics.vibrating.fluid_motion import free_motion
@@ -47,8 +46,8 @@ _MOST_POSITIONS = 8
 class WaitingDrop(FollowedDrop):
     """One drop that is told its flights, and its law and friction at touch.
 
-    `oblique`: its motion along the plate, if there is any, and `sliding` that in its impacts.
-    `flown`: its flights. `to_fluid`: energy that it gave to a fluid so far [J].
+    `told`: its flights, with any motion along the plate, and `sliding` that in its impacts.
+    `flown`: the flights that it has made.
     """
 
     waits = True
@@ -56,17 +55,16 @@ class WaitingDrop(FollowedDrop):
     def __init__(self, problem: Problem, system: LinearSystem, stated_mass: float) -> None:
         self.flown: list[Flown] = []
         self.sliding: list[SlidingContact] = []
-        self.to_fluid = 0.0
+        self.told = ToldFlights(problem, start_of(problem)[1])
+        self.oblique = self.told.oblique
         self._asked: list[float] = []
-        self.oblique = motion_along(problem)
         self._stated_mass = stated_mass
         super().__init__(problem, system, stated_mass)
-        self._liquid_at_start = self.energy_of_liquid()
 
     def first_flight(self) -> Flight:
         """Return the flight from the start."""
-        flight = super().first_flight()
-        return self._flight(0.0, float(flight.gap[0]), float(flight.velocity[0]))
+        gap, velocity = start_of(self.problem)
+        return self.told.next(0.0, gap, velocity)
 
     def first_touch(self) -> float:
         """Return the time of the first touch [s], from the start; infinite if there is none."""
@@ -90,57 +88,31 @@ class WaitingDrop(FollowedDrop):
     # flight
     # -------------------------------------------------------------------------------------
 
-    def _flight(self, start: float, gap: float, velocity: float) -> Flight:
-        """Return the flight of the sphere from a time [s], a gap [m] and a velocity [m/s] on."""
-        along = np.zeros((0, 1))
-        if self.oblique is not None:
-            along = self.oblique.state.velocity
-        return flight_of(
-            self.problem, np.array([start]), np.array([gap]), np.array([velocity]), along
-        )
+    def _next_flight(self) -> Flight:
+        """Return the flight that the sphere is about to make."""
+        numbers = self.drop.state
+        gap = float(numbers[records.GAP])
+        return self.told.next(self.time, gap, float(numbers[records.VELOCITY]))
 
     def _fly(self) -> None:
         """Let the drop fly to its next touch, or until a rule ends its run."""
-        drop = self.drop
-        numbers = drop.state
         start = self.time
-        flight = self._flight(start, float(numbers[records.GAP]), float(numbers[records.VELOCITY]))
-        law = self._next_law(float(numbers[records.CLOSING]))
+        flight = self._next_flight()
+        law = self._next_law(float(self.drop.state[records.CLOSING]))
         motion, elapsed = self._to_touch(flight, float(law.touch_level))
-        touch = start + elapsed
-        top = float(flight.apex()[0][0])
-        is_beside = False
+        time, phase = self.told.end_of(flight, start + elapsed, self.impacts)
+        after = motion.state_after(time - start)
+        write_flight(self.system.record_of(0), self.drop, motion.start.record, after.record, time)
         along = None
         if self.oblique is not None:
-            is_beside = self.oblique.is_beside(flight, touch)
             along = self.oblique.sphere, self.oblique.state
-        fall = FreeFall(start, top, touch, 0.0, is_beside)
-        end, ending = first_end(self.manner.stops, fall, self.impacts)
-        time = min(end, touch)
-        after = motion.state_after(time - start)
-        record = self.system.record_of(0)
-        write_flight(record, drop, motion.start.record, after.record, time)
         self.flown.append(Flown(flight, motion, along))
-        if self.oblique is not None:
-            self.oblique.fly(flight, np.array([time]))
-        phase = records.AT_TOUCH
-        if touch >= end:
-            phase = ending
-            numbers[records.END_TIME] = end
-        self._give_to_fluid(flight, time, touches=phase == records.AT_TOUCH)
-        self.now = self.now._replace(phase=phase, state=after.record)
-
-    def _give_to_fluid(self, flight: Flight, time: float, *, touches: bool) -> None:
-        """Take account of the energy that a flight up to a time [s] gave to a fluid."""
-        row: dict[str, float] = {}
-        if isinstance(flight, FluidFlight):
-            assert self.problem.fluid is not None
-            mass = float(self.problem.sphere.mass)
-            self.to_fluid += mass * float(flight.given(np.array([time]))[0])
-            lost = mass * float(flight.lost(np.array([time]))[0])
-            row[f"{self.problem.fluid.key}_lost_J"] = lost
-        if touches:
+        row = self.told.fly(flight, time)
+        if phase == records.AT_TOUCH:
             self.rows.append(row)
+        else:
+            self.drop.state[records.END_TIME] = time
+        self.now = self.now._replace(phase=phase, state=after.record)
 
     def _to_touch(self, flight: Flight, level: float) -> tuple[FreeMotion, float]:
         """Return the free motion of the bodies, and the time until the surfaces touch [s].
@@ -259,22 +231,17 @@ class WaitingDrop(FollowedDrop):
     def _rise_in_fluid(self, row: Floats) -> None:
         """Write how high a drop rises through a fluid."""
         numbers = self.drop.state
-        gap = float(numbers[records.GAP])
-        if self.now.phase >= 0 or not numbers[records.VELOCITY] > 0.0:
-            return
-        flight = self._flight(self.time, gap, float(numbers[records.VELOCITY]))
-        row[records.REBOUND] = numbers[records.RADIUS] + float(flight.apex()[1][0])
+        if self.now.phase < 0 and numbers[records.VELOCITY] > 0.0:
+            top = float(self._next_flight().apex()[1][0])
+            row[records.REBOUND] = numbers[records.RADIUS] + top
 
     def _leave_dent(self, oblique: ObliqueMotion, row: Floats) -> None:
         """Forget the dent where the drop touches next beyond the radius of its last contact."""
         numbers = self.drop.state
-        flight = self._flight(
-            self.time, float(numbers[records.GAP]), float(numbers[records.VELOCITY])
-        )
+        flight = self._next_flight()
         touch, _ = flight.touch(np.zeros(1))
-        distance = oblique.distance(flight, touch)
         indentation = float(np.nan_to_num(row[records.INDENTATION]))
-        if distance > np.sqrt(numbers[records.RADIUS] * indentation):
+        if oblique.distance(flight, touch) > np.sqrt(numbers[records.RADIUS] * indentation):
             numbers[records.DENT] = 0.0
 
     # what is told of it
@@ -288,43 +255,25 @@ class WaitingDrop(FollowedDrop):
         """Return its flights and impacts."""
         return replace(super().recording(), flown=self.flown, sliding=self.sliding)
 
-    def lie_along(self, end: float) -> float:
+    def energy_at_start(self) -> float:
+        """Return the energy beside that of the fall [J], before any flight."""
+        return self.told.energy_at_start()
+
+    def end_along(self, end: float) -> float:
         """Let a drop at rest lie on the plate until the end of its run, and return that [s].
 
         It may leave the plate over an edge before.
         """
-        assert self.oblique is not None  # it moves along the plate
-        if not self.is_at_rest:
+        if self.oblique is None or not self.is_at_rest:
             return end
         pressing = self.drop.state[[records.GRAVITY]]
         elapsed = np.array([max(end - self.time, 0.0)])
         lain = float(self.oblique.lie(pressing, elapsed)[0])
         return min(end, self.time + lain)
 
-    def energies_along(self) -> dict[str, float]:
-        """Return the entries of the motion along the plate in the energy ledger [J]."""
-        assert self.oblique is not None  # it moves along the plate
-        return self.oblique.energies()
-
-    def energy_of_liquid(self) -> float:
-        """Return the kinetic energy of the liquid that moves along with the sphere [J]."""
-        _, velocity = self.centre()
-        square = velocity**2
-        if self.oblique is not None:
-            square += float((self.oblique.state.velocity**2).sum())
-        inertia = float(self.problem.flight_inertia)
-        return 0.5 * float(self.problem.sphere.mass) * (inertia - 1.0) * square
-
-    def energy_along(self) -> float:
-        """Return the kinetic energy along the plate and of the spin [J]."""
-        if self.oblique is None:
-            return 0.0
-        energies = self.oblique.energies()
-        return energies["kinetic_J"] + energies["rotation_J"]
-
-    def energy_to_fluid(self) -> float:
-        """Return the energy that a fluid has taken [J]."""
-        return self.to_fluid + self._liquid_at_start - self.energy_of_liquid()
+    def further_entries(self) -> dict[str, float]:
+        """Return what is added to the entries of the energy ledger [J]."""
+        return self.told.entries(self.centre()[1])
 
     def taken_by_friction(self) -> tuple[float, float]:
         """Return the energy that friction took, and the part of it in microslip [J]."""
