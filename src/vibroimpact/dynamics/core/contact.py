@@ -214,8 +214,8 @@ def follow_contact(
             peaks = peaks_with(bases, law, peaks, parts, between, (largest_force, deepest))
             under_law = parts.written[PARTS]
             plastic += plastic_work(law, delta)
-            number = write_law(parts, number, law.speed, delta)
             law = law_after(law, delta)
+            number = write_law(parts, number, delta, law)
         if next_length < _SHORTEST * manner.span:
             outcome = TOO_STIFF
             break
@@ -262,8 +262,8 @@ def follow_contact(
             peaks = peaks_with(bases, law, peaks, parts, between, (largest_force, deepest))
             under_law = parts.written[PARTS]
             plastic += plastic_work(law, delta)
-            number = write_law(parts, number, law.speed, delta)
             law = law_after(law, delta)
+            number = write_law(parts, number, delta, law)
         if pushes:
             if is_captured(system, law, manner, state, delta):
                 outcome = CAPTURED

@@ -233,7 +233,8 @@ class Parts(NamedTuple):
     sphere (P, 2, 13), the numbers of `surface_friction_records` at their starts and ends.
 
     A law is another one, origin (L,), or `OF_IMPACT`, at a closing speed (L,) [m/s], which
-    remembers the indentation compressed (L,) [m]; this is NaN where it changes no memory.
+    remembers the indentation compressed (L,) [m]; this is NaN where it changes no memory. These are
+    its coefficients (L, K).
     """
 
     written: Integers
@@ -262,3 +263,4 @@ class Parts(NamedTuple):
     origin: Integers
     closing_speed: Vector
     compressed: Vector
+    coefficients: Matrix

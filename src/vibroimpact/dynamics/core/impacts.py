@@ -234,7 +234,7 @@ def begin_contact(
     """
     closing = closing_speed(system, state)
     law = law_at_touch(manner.addresses, coefficients.copy(), manner.series, closing)
-    number = write_law(parts, progress.law, closing, np.nan)
+    number = write_law(parts, progress.law, np.nan, law)
     begun = Progress(
         progress.time,
         min(progress.next_length, _FIRST_LENGTH * span),
@@ -469,7 +469,7 @@ def settled(
     if approach <= touch:
         origin = progress.law if manner.lasts else OF_IMPACT
         law = law_at_touch(manner.addresses, drop.coefficients.copy(), manner.series, now.law.speed)
-        number = write_law(drop.parts, origin, law.speed, np.nan)
+        number = write_law(drop.parts, origin, np.nan, law)
         progress = with_law(progress, progress.time, number, progress.sphere)
     return Now(END_BY_REST_SPEED, now.state, now.begun, law, now.manner, progress, now.contacts)
 
@@ -484,9 +484,9 @@ def stayed(manner: ImpactManner, drop: VibratingDrop, now: Now, outcome: int) ->
     progress = now.progress
     delta = progress.delta
     if delta > law.memory_level:
-        number = write_law(drop.parts, progress.law, law.speed, delta)
         done = progress.plastic + plastic_work(law, delta)
         law = law_after(law, delta)
+        number = write_law(drop.parts, progress.law, delta, law)
         progress = with_plastic(with_law(progress, progress.time, number, progress.sphere), done)
     phase = END_FAILED
     if outcome == CAPTURED:

@@ -249,29 +249,42 @@ def law_of(contacts: Contacts, contact: int) -> Law:
     )
 
 
+@compiled(lambda t: t.of(Contacts)(t.of(Law), t.integer, t.integer))
+def room_for_laws(law: Law, laws: int, tension: int) -> Contacts:
+    """Return room for so many laws of the kind of one, with the same `tension`."""
+    return Contacts(
+        np.empty(4 * laws, law.addresses.dtype),
+        np.empty((laws, len(law.coefficients))),
+        np.empty((laws, 7)),
+        np.empty((laws, 8)),
+        np.full(laws, tension),
+    )
+
+
+@compiled(lambda t: t.void(t.of(Contacts), t.integer, t.of(Law)))
+def write_law_of(contacts: Contacts, contact: int, law: Law) -> None:
+    """Write the law of one of several contacts."""
+    for function in range(4):
+        contacts.addresses[4 * contact + function] = law.addresses[function]
+    write_row(contacts.coefficients, contact, law.coefficients)
+    write_row(contacts.series, contact, law.series)
+    numbers = contacts.numbers[contact]
+    numbers[SPEED] = law.speed
+    numbers[TOUCH] = law.touch
+    numbers[RELEASE] = law.release
+    numbers[RELEASE_LEVEL] = law.release_level
+    numbers[MEMORY_LEVEL] = law.memory_level
+    numbers[FIRST_BREAKPOINT] = law.first_breakpoint
+    numbers[SECOND_BREAKPOINT] = law.second_breakpoint
+    numbers[JUMP] = law.jump
+
+
 @compiled(lambda t: t.of(Contacts)(t.of(Law), t.integer))
 def contacts_of(law: Law, tension: int) -> Contacts:
     """Return the law of one contact as stretches take it."""
-    coefficients = np.empty((1, len(law.coefficients)))
-    write_row(coefficients, 0, law.coefficients)
-    series = np.empty((1, len(law.series)))
-    write_row(series, 0, law.series)
-    numbers = np.empty((1, 8))
-    numbers[0, SPEED] = law.speed
-    numbers[0, TOUCH] = law.touch
-    numbers[0, RELEASE] = law.release
-    numbers[0, RELEASE_LEVEL] = law.release_level
-    numbers[0, MEMORY_LEVEL] = law.memory_level
-    numbers[0, FIRST_BREAKPOINT] = law.first_breakpoint
-    numbers[0, SECOND_BREAKPOINT] = law.second_breakpoint
-    numbers[0, JUMP] = law.jump
-    return Contacts(
-        law.addresses.copy(),
-        coefficients,
-        series,
-        numbers,
-        np.array([tension]),
-    )
+    contacts = room_for_laws(law, 1, tension)
+    write_law_of(contacts, 0, law)
+    return contacts
 
 
 @compiled(lambda t: t.of(Law)(t.integers, t.vector, t.vector, t.real))

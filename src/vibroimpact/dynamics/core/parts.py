@@ -16,7 +16,7 @@ from vibroimpact.dynamics.core.contact_records import (
     Parts,
 )
 from vibroimpact.dynamics.core.linear import product, write_layer, write_row
-from vibroimpact.dynamics.core.records import Bases, Basis, State, System
+from vibroimpact.dynamics.core.records import Bases, Basis, Law, State, System
 from vibroimpact.dynamics.core.surface_friction_records import (
     DISPLACEMENT_X,
     FORCE_X,
@@ -38,15 +38,16 @@ def has_room(parts: Parts) -> bool:
     )
 
 
-@compiled(lambda t: t.integer(t.of(Parts), t.integer, t.real, t.real))
-def write_law(parts: Parts, origin: int, closing_speed: float, compressed: float) -> int:
-    """Write a law, and return its number; the arguments are the columns of `Parts`."""
-    law = parts.written[LAWS]
-    parts.origin[law] = origin
-    parts.closing_speed[law] = closing_speed
-    parts.compressed[law] = compressed
-    parts.written[LAWS] = law + 1
-    return int(law)
+@compiled(lambda t: t.integer(t.of(Parts), t.integer, t.real, t.of(Law)))
+def write_law(parts: Parts, origin: int, compressed: float, law: Law) -> int:
+    """Write a law, and return its number; `origin`, `compressed`: the columns of `Parts`."""
+    number = parts.written[LAWS]
+    parts.origin[number] = origin
+    parts.closing_speed[number] = law.speed
+    parts.compressed[number] = compressed
+    write_row(parts.coefficients, number, law.coefficients)
+    parts.written[LAWS] = number + 1
+    return int(number)
 
 
 @compiled(lambda t: t.void(t.of(Parts), t.integer, t.real, t.real, t.of(State), t.integer))

@@ -100,7 +100,7 @@ def drop_at_start(problem: Problem, system: LinearSystem, held: ExitStack) -> Vi
         rows=np.full((room, VIBRATING_COLUMNS), np.nan),
         laws=laws,
         coefficients=laws[0].copy(),
-        parts=room_for_parts(system),
+        parts=room_for_parts(system, laws.shape[1]),
     )
 
 

@@ -29,7 +29,7 @@ from vibroimpact.dynamics.statement.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.drop_system import slices_of, system_of
 from vibroimpact.dynamics.vibrating.followed_drop import FollowedDrop
-from vibroimpact.dynamics.vibrating.growth_of_differences import growth_of
+from vibroimpact.dynamics.vibrating.growth import growth_of
 from vibroimpact.dynamics.vibrating.recorded_drop import RecordedDrop
 from vibroimpact.dynamics.vibrating.waiting_drop import WaitingDrop
 
@@ -103,16 +103,11 @@ def _ended(drop: FollowedDrop, energy_in: float, keeps_bounces: bool) -> _Ended:
     if drop.is_at_rest:
         drop.lie_until(end_time)
     energy, added = _entries(drop)
-    recorded = None
-    if keeps_bounces or _is_sensitive(problem):
-        recorded = drop.recording()
     table = _table_of(drop)
     if _is_sensitive(problem):
-        assert recorded is not None
-        table["sensitivity"] = growth_of(problem, recorded)
-    return _Ended(
-        drop, end_time, table, energy, added, energy_in, recorded if keeps_bounces else None
-    )
+        table["sensitivity"] = growth_of(drop)
+    recorded = drop.recording() if keeps_bounces else None
+    return _Ended(drop, end_time, table, energy, added, energy_in, recorded)
 
 
 def _is_sensitive(problem: Problem) -> bool:

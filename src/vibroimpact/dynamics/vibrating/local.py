@@ -125,12 +125,6 @@ class LocalContact:
             return stored
         return stored + self.series.energy(self._static(delta)) - self.energy_of_jump
 
-    def work_at_indentation(self, delta: Array) -> Array:
-        """Return the sum of stored energy and plastic work at an indentation of the law [J]."""
-        return self.energy_at_indentation(delta) + self.law.plastic_work(
-            np.maximum(delta, self.release_indentation)
-        )
-
     def approach_at(self, delta: Array) -> Array:
         """Return the approach y [m] at an indentation of the law [m]."""
         if not self.series:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, overload
@@ -43,7 +43,7 @@ from vibroimpact.dynamics.vibrating.surface_friction import (
 _FIRST_PARTS = 128  # of a motion; the room doubles
 _FIRST_LAWS = 32
 
-_OF_LAWS = ("origin", "closing_speed", "compressed")
+_OF_LAWS = ("origin", "closing_speed", "compressed", "coefficients")
 """The arrays of `Parts` with one entry for each law; the others, but for the first, have one for
 each part.
 """
@@ -120,20 +120,6 @@ class RecordedMotion:
             end -= 1
         return range(first, end)
 
-    def phases(self, numbers: range) -> Iterator[tuple[int, int]]:
-        """Yield the stretches under one law: the first, and the one after the last.
-
-        Any other part is alone.
-        """
-        kind = self.parts.kind.tolist()
-        law = self.parts.law.tolist()
-        first = numbers.start
-        for part in range(numbers.start + 1, numbers.stop + 1):
-            ends = part == numbers.stop or not kind[part] == kind[first] == STRETCH
-            if ends or law[part] != law[first]:
-                yield first, part
-                first = part
-
     def start(self, part: int) -> State:
         """Return the state at the start of a part."""
         parts = self.parts
@@ -145,18 +131,6 @@ class RecordedMotion:
             is_stretch = self.parts.kind[part] == STRETCH
             self._motions[part] = self._stretch(part) if is_stretch else self._free(part)
         return self._motions[part]
-
-    def stretch(self, part: int) -> VibratingStretch:
-        """Return the stretch that is a part."""
-        motion = self.motion(part)
-        assert isinstance(motion, VibratingStretch)
-        return motion
-
-    def free(self, part: int) -> FreePhase:
-        """Return the recoil, or the motion between two contacts, that is a part."""
-        motion = self.motion(part)
-        assert isinstance(motion, FreePhase)
-        return motion
 
     def view(self, part: int) -> ContactView:
         """Return the system in a part of an impact, reduced to its contact."""
@@ -257,12 +231,10 @@ class PiecesOfImpact(Sequence[Piece]):
         return len(self.numbers)
 
 
-def room_for_parts(system: LinearSystem) -> Parts:
-    """Return room for the parts of the motion of a drop."""
-    return _room(system, _FIRST_PARTS, _FIRST_LAWS)
-
-
-def _room(system: LinearSystem, most: int, laws: int) -> Parts:
+def room_for_parts(system: LinearSystem, coefficients: int) -> Parts:
+    """Return room for the parts of the motion of a drop, whose law has so many coefficients."""
+    most = _FIRST_PARTS
+    laws = _FIRST_LAWS
     number = system.number
     elements = len(system.rate)
     directions = 0 if system.along is None else len(system.along)
@@ -294,6 +266,7 @@ def _room(system: LinearSystem, most: int, laws: int) -> Parts:
         origin=np.zeros(laws, dtype=np.int64),
         closing_speed=np.empty(laws),
         compressed=np.empty(laws),
+        coefficients=np.empty((laws, coefficients)),
     )
 
 
