@@ -155,13 +155,19 @@ def manner_at_touch(
 
 @compiled(
     lambda t: t.of(Now)(
-        t.of(System), t.of(ImpactManner), t.of(VibratingDrop), t.of(State), t.of(SlidingSphere)
+        t.of(System),
+        t.of(ImpactManner),
+        t.of(VibratingDrop),
+        t.of(Parts),
+        t.of(State),
+        t.of(SlidingSphere),
     )
 )
 def begin_impact(
     system: System,
     manner: ImpactManner,
     drop: VibratingDrop,
+    parts: Parts,
     state: State,
     sphere: SlidingSphere,
 ) -> Now:
@@ -170,8 +176,8 @@ def begin_impact(
     for coordinate in range(len(drop.lost_in_impact)):
         drop.lost_in_impact[coordinate] = 0.0
     row = drop.rows[drop.counts[IMPACTS]]
-    row[FIRST_PART] = drop.parts.written[PARTS]
-    row[FIRST_LAW] = drop.parts.written[LAWS]
+    row[FIRST_PART] = parts.written[PARTS]
+    row[FIRST_LAW] = parts.written[LAWS]
     untouched = Progress(
         0.0,
         np.inf,
@@ -190,7 +196,7 @@ def begin_impact(
         sphere,
     )
     law, progress = begin_contact(
-        system, manner, drop.coefficients, of_contact.span, state, untouched, drop.parts
+        system, manner, drop.coefficients, of_contact.span, state, untouched, parts
     )
     return Now(IN_CONTACT, state, state, law, of_contact, progress, 1)
 
@@ -338,13 +344,20 @@ def next_contact(
 
 @compiled(
     lambda t: t.of(Now)(
-        t.of(System), t.of(ImpactManner), t.of(VibratingDrop), t.of(Now), t.real, t.boolean
+        t.of(System),
+        t.of(ImpactManner),
+        t.of(VibratingDrop),
+        t.of(Parts),
+        t.of(Now),
+        t.real,
+        t.boolean,
     )
 )
 def touch_again(
     system: System,
     manner: ImpactManner,
     drop: VibratingDrop,
+    parts: Parts,
     now: Now,
     time: float,
     is_same: bool,
@@ -360,7 +373,7 @@ def touch_again(
     begun = progress.time
     if np.isfinite(time):
         after = state_after(system, state, time)
-        write_free(drop.parts, APART, progress.time, time, state, progress.law)
+        write_free(parts, APART, progress.time, time, state, progress.law)
         gone = lost_in_flight(system, state, after)
         for coordinate in range(len(gone)):
             drop.lost_in_impact[coordinate] += gone[coordinate]
@@ -379,7 +392,7 @@ def touch_again(
         now.manner.span,
         state,
         with_law(progress, begun, number, sphere),
-        drop.parts,
+        parts,
     )
     of_contact = Manner(
         now.manner.tension,
@@ -398,11 +411,11 @@ def touch_again(
 
 @compiled(
     lambda t: t.of(Now)(
-        t.of(Bases), t.of(Bodies), t.of(ImpactManner), t.of(VibratingDrop), t.of(Now)
+        t.of(Bases), t.of(Bodies), t.of(ImpactManner), t.of(VibratingDrop), t.of(Parts), t.of(Now)
     )
 )
 def follow_impact(
-    bases: Bases, bodies: Bodies, manner: ImpactManner, drop: VibratingDrop, now: Now
+    bases: Bases, bodies: Bodies, manner: ImpactManner, drop: VibratingDrop, parts: Parts, now: Now
 ) -> Now:
     """Follow an impact to its end, or until something is to be decided.
 
@@ -421,7 +434,7 @@ def follow_impact(
                 now.state,
                 now.progress,
                 drop.lost_in_impact,
-                drop.parts,
+                parts,
             )
             now = Now(IN_CONTACT, state, now.begun, law, now.manner, progress, now.contacts)
         if outcome == FULL:
@@ -429,7 +442,7 @@ def follow_impact(
         if outcome == MAY_REST:
             return in_phase(now, NEAR_REST)
         if outcome != RELEASED:
-            return stayed(manner, drop, now, outcome)
+            return stayed(manner, drop, parts, now, outcome)
         if manner.lasts:
             for number in range(len(drop.coefficients)):
                 drop.coefficients[number] = now.law.coefficients[number]
@@ -438,12 +451,12 @@ def follow_impact(
         touch, _, _, _, _ = levels_at(manner.addresses[2])(drop.coefficients)
         is_slow = 0.0 < speed < rest_speed and system.gravity > 0.0
         if is_slow and separates_slower_than(system, touch, now.state, rest_speed):
-            return settled(system, manner, drop, now, touch)
+            return settled(system, manner, drop, parts, now, touch)
         time, is_same = next_contact(system, manner, drop, now)
         if not np.isfinite(time) and speed >= 0.0:
             return in_phase(now, IN_FLIGHT)
         # where the sphere does not separate, the next touch is within rounding of this one
-        now = touch_again(system, manner, drop, now, time, is_same)
+        now = touch_again(system, manner, drop, parts, now, time, is_same)
 
 
 @compiled(lambda t: t.of(Now)(t.of(Now), t.integer))
@@ -453,10 +466,12 @@ def in_phase(now: Now, phase: int) -> Now:
 
 
 @compiled(
-    lambda t: t.of(Now)(t.of(System), t.of(ImpactManner), t.of(VibratingDrop), t.of(Now), t.real)
+    lambda t: t.of(Now)(
+        t.of(System), t.of(ImpactManner), t.of(VibratingDrop), t.of(Parts), t.of(Now), t.real
+    )
 )
 def settled(
-    system: System, manner: ImpactManner, drop: VibratingDrop, now: Now, touch: float
+    system: System, manner: ImpactManner, drop: VibratingDrop, parts: Parts, now: Now, touch: float
 ) -> Now:
     """Return where a drop is that lacks the energy to leave the plate again, after a release.
 
@@ -469,13 +484,15 @@ def settled(
     if approach <= touch:
         origin = progress.law if manner.lasts else OF_IMPACT
         law = law_at_touch(manner.addresses, drop.coefficients.copy(), manner.series, now.law.speed)
-        number = write_law(drop.parts, origin, np.nan, law)
+        number = write_law(parts, origin, np.nan, law)
         progress = with_law(progress, progress.time, number, progress.sphere)
     return Now(END_BY_REST_SPEED, now.state, now.begun, law, now.manner, progress, now.contacts)
 
 
-@compiled(lambda t: t.of(Now)(t.of(ImpactManner), t.of(VibratingDrop), t.of(Now), t.integer))
-def stayed(manner: ImpactManner, drop: VibratingDrop, now: Now, outcome: int) -> Now:
+@compiled(
+    lambda t: t.of(Now)(t.of(ImpactManner), t.of(VibratingDrop), t.of(Parts), t.of(Now), t.integer)
+)
+def stayed(manner: ImpactManner, drop: VibratingDrop, parts: Parts, now: Now, outcome: int) -> Now:
     """Return where a drop is whose impact ends in contact; `outcome`: of the contact.
 
     The law keeps its memory of the largest indentation.
@@ -486,7 +503,7 @@ def stayed(manner: ImpactManner, drop: VibratingDrop, now: Now, outcome: int) ->
     if delta > law.memory_level:
         done = progress.plastic + plastic_work(law, delta)
         law = law_after(law, delta)
-        number = write_law(drop.parts, progress.law, delta, law)
+        number = write_law(parts, progress.law, delta, law)
         progress = with_plastic(with_law(progress, progress.time, number, progress.sphere), done)
     phase = END_FAILED
     if outcome == CAPTURED:

@@ -32,9 +32,14 @@ from vibroimpact.dynamics.core.surface_friction_records import (
 
 @compiled(lambda t: t.boolean(t.of(Parts)))
 def has_room(parts: Parts) -> bool:
-    """Is there room for a further part, and for two further laws?"""
+    """Is there room for what is written before this is asked again?
+
+    That is a stretch and free motion to the next contact, two changes of a law's memory, the law of
+    the next contact, and that of a sphere that stays.
+    """
     return bool(
-        parts.written[PARTS] < len(parts.start) and parts.written[LAWS] + 1 < len(parts.origin)
+        parts.written[PARTS] + 2 <= len(parts.start)
+        and parts.written[LAWS] + 4 <= len(parts.origin)
     )
 
 

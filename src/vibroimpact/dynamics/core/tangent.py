@@ -89,7 +89,7 @@ def propagate(
     bodies : Bodies
         The linear system without gravity and gap.
     laws : Contacts
-        The law, and laws with the closing speed or coefficients varied (1 + v).
+        The law, and laws with the closing speed or the memory varied (1 + v).
     weights : array, shape (v,)
         By what the change of the force of each varied law counts.
     solved : Solved
@@ -109,8 +109,8 @@ def propagate(
         delta = solved.delta[stretch, 1:]
         rate = solved.rate[stretch, 1:]
         linearise_contact(laws, 0, delta, rate, linear)
-        # another closing speed and other coefficients change the forces of the law and its approach
-        # at fixed indentations and rates
+        # another closing speed or memory changes the forces of the law and its approach at fixed
+        # indentations and rates
         change = np.zeros((3, nodes))
         for variation in range(len(weights)):
             linearise_contact(laws, 1 + variation, delta, rate, varied)

@@ -13,7 +13,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled, lent, levels_at
-from vibroimpact.dynamics.core.contact_records import FLIGHT, LAWS, OF_IMPACT, Bodies
+from vibroimpact.dynamics.core.contact_records import FLIGHT, LAWS, OF_IMPACT, Bodies, Parts
 from vibroimpact.dynamics.core.drop_records import (
     ACCELERATION,
     APPROACH,
@@ -93,6 +93,7 @@ from vibroimpact.dynamics.core.vibrating_records import (
         t.of(Bodies),
         t.of(ImpactManner),
         t.of(VibratingDrop),
+        t.of(Parts),
         t.of(SlidingSphere),
         t.of(Now),
         t.integer,
@@ -103,6 +104,7 @@ def follow_vibrating_drop(
     bodies: Bodies,
     manner: ImpactManner,
     drop: VibratingDrop,
+    parts: Parts,
     sphere: SlidingSphere,
     now: Now,
     pause: int,
@@ -120,8 +122,8 @@ def follow_vibrating_drop(
         The linear system.
     manner : ImpactManner
         What stays the same.
-    drop : VibratingDrop
-        The drop, to which is written.
+    drop, parts : VibratingDrop, Parts
+        The drop, and the parts of its motion, to which is written.
     sphere : SlidingSphere
         Friction at touch.
     now : Now
@@ -133,35 +135,40 @@ def follow_vibrating_drop(
     bases = lent(bases)
     bodies = lent(bodies)
     drop = lent(drop)
+    parts = lent(parts)
     system = bodies.system
     while True:
         if now.phase == IN_FLIGHT:
-            if manner.waits or not has_room(drop.parts):
+            if manner.waits or not has_room(parts):
                 break
-            now = fly(system, manner, drop, now)
+            now = fly(system, manner, drop, parts, now)
         elif now.phase == AT_TOUCH:
             if drop.counts[IMPACTS] == pause:
                 break
-            now = begin_impact(system, manner, drop, now.state, sphere)
+            now = begin_impact(system, manner, drop, parts, now.state, sphere)
         elif now.phase == IN_CONTACT or now.phase == HELD:
-            now = follow_impact(bases, bodies, manner, drop, now)
+            now = follow_impact(bases, bodies, manner, drop, parts, now)
             if now.phase == IN_CONTACT:  # there is no room
                 break
             if now.phase == IN_FLIGHT or now.phase >= 0:
-                write_impact(system, manner, drop, now)
+                write_impact(system, manner, drop, parts, now)
         else:
             break
     return now
 
 
-@compiled(lambda t: t.of(Now)(t.of(System), t.of(ImpactManner), t.of(VibratingDrop), t.of(Now)))
-def fly(system: System, manner: ImpactManner, drop: VibratingDrop, now: Now) -> Now:
+@compiled(
+    lambda t: t.of(Now)(
+        t.of(System), t.of(ImpactManner), t.of(VibratingDrop), t.of(Parts), t.of(Now)
+    )
+)
+def fly(system: System, manner: ImpactManner, drop: VibratingDrop, parts: Parts, now: Now) -> Now:
     """Return where a drop is after its flight: at its next touch, or where a rule ends its run."""
     flight = next_flight(system, manner, drop, now.state)
     end, ending = first_end(manner.stops, flight, drop.counts[IMPACTS])
     time = min(end, flight.touch)
     after = state_after(system, now.state, time - flight.start)
-    write_flight(system, drop, now.state, after, time)
+    write_flight(system, drop, parts, now.state, after, time)
     phase = AT_TOUCH
     if flight.touch >= end:
         drop.state[END_TIME] = end
@@ -187,13 +194,17 @@ def next_flight(
     return FreeFall(start, top, touch, 0.0, False)
 
 
-@compiled(lambda t: t.void(t.of(System), t.of(VibratingDrop), t.of(State), t.of(State), t.real))
+@compiled(
+    lambda t: t.void(
+        t.of(System), t.of(VibratingDrop), t.of(Parts), t.of(State), t.of(State), t.real
+    )
+)
 def write_flight(
-    system: System, drop: VibratingDrop, before: State, after: State, time: float
+    system: System, drop: VibratingDrop, parts: Parts, before: State, after: State, time: float
 ) -> None:
     """Write a flight between two states that ends at a time [s], and what it took."""
     start = drop.state[TIME]
-    write_free(drop.parts, FLIGHT, start, time - start, before, OF_IMPACT)
+    write_free(parts, FLIGHT, start, time - start, before, OF_IMPACT)
     drop.counts[FLIGHTS] += 1
     gone = lost_in_flight(system, before, after)
     for coordinate in range(len(gone)):
@@ -211,8 +222,12 @@ def write_centre(numbers: Floats, state: State) -> None:
     numbers[VELOCITY] = -state.velocity[0] / root
 
 
-@compiled(lambda t: t.void(t.of(System), t.of(ImpactManner), t.of(VibratingDrop), t.of(Now)))
-def write_impact(system: System, manner: ImpactManner, drop: VibratingDrop, now: Now) -> None:
+@compiled(
+    lambda t: t.void(t.of(System), t.of(ImpactManner), t.of(VibratingDrop), t.of(Parts), t.of(Now))
+)
+def write_impact(
+    system: System, manner: ImpactManner, drop: VibratingDrop, parts: Parts, now: Now
+) -> None:
     """Write the row of an impact that has ended, and what it has made of the drop."""
     numbers = drop.state
     impacts = drop.counts[IMPACTS]
@@ -245,9 +260,9 @@ def write_impact(system: System, manner: ImpactManner, drop: VibratingDrop, now:
     write_losses(drop, now, stored, row)
     write_separation(system, drop, now, row)
     if manner.lasts:
-        for law in range(int(row[FIRST_LAW]), drop.parts.written[LAWS]):
-            if drop.parts.compressed[law] > numbers[DENT]:
-                numbers[DENT] = drop.parts.compressed[law]
+        for law in range(int(row[FIRST_LAW]), parts.written[LAWS]):
+            if parts.compressed[law] > numbers[DENT]:
+                numbers[DENT] = parts.compressed[law]
     fresh = drop.laws[min(impacts + 1, len(drop.laws) - 1)]
     remember(manner.addresses, manner.lasts, fresh, numbers[DENT], drop.coefficients)
     if now.phase >= 0:

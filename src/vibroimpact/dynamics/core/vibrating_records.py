@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from vibroimpact.arrays import Integers
-from vibroimpact.dynamics.core.contact_records import Manner, Parts, Progress
+from vibroimpact.dynamics.core.contact_records import Manner, Progress
 from vibroimpact.dynamics.core.drop_records import COLUMNS, StopRules
 from vibroimpact.dynamics.core.records import (
     Boolean,
@@ -70,7 +70,7 @@ class VibratingDrop(NamedTuple):
     1,): energy lost so far in each coordinate, and last in massless elements [J]. lost_in_impact (n
     + 1,): in the impact under way, last in its contacts. rows (R, 28): the table of impacts. laws
     (I, K): coefficients of the law of each impact, of which the last one goes on. coefficients
-    (K,): of the next contact, with the memory of earlier ones. parts: of the motion.
+    (K,): of the next contact, with the memory of earlier ones.
     """
 
     counts: Integers
@@ -80,7 +80,6 @@ class VibratingDrop(NamedTuple):
     rows: Matrix
     laws: Matrix
     coefficients: Vector
-    parts: Parts
 
 
 IMPACTS, FLIGHTS = range(2)

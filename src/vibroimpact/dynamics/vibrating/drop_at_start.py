@@ -26,7 +26,6 @@ from vibroimpact.dynamics.motion.run_rules import laws_of, start_of, stop_rules_
 from vibroimpact.dynamics.statement.problem import MOST_IMPACTS, Problem
 from vibroimpact.dynamics.vibrating.drop_system import driven_state_of
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
-from vibroimpact.dynamics.vibrating.recorded_motion import room_for_parts
 from vibroimpact.dynamics.vibrating.surface_friction import NO_FRICTION, longest_with_friction
 
 MOST_STEPS = 5_000
@@ -100,7 +99,6 @@ def drop_at_start(problem: Problem, system: LinearSystem, held: ExitStack) -> Vi
         rows=np.full((room, VIBRATING_COLUMNS), np.nan),
         laws=laws,
         coefficients=laws[0].copy(),
-        parts=room_for_parts(system, laws.shape[1]),
     )
 
 

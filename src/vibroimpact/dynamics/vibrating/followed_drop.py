@@ -48,6 +48,7 @@ from vibroimpact.dynamics.vibrating.recorded_drop import RecordedDrop
 from vibroimpact.dynamics.vibrating.recorded_motion import (
     ImpactOn,
     RecordedMotion,
+    room_for_parts,
     with_more_room,
 )
 from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
@@ -87,7 +88,9 @@ class FollowedDrop:
         self.drop = drop_at_start(problem, system, self.held)
         self.now = now_at_start(problem, self.drop, state)
         self.manner = manner_of(problem, tangential_period(system, state), waits=self.waits)
-        self.recorded = RecordedMotion(system, self.drop.parts, state)
+        self.recorded = RecordedMotion(
+            system, room_for_parts(system, self.drop.laws.shape[1]), state
+        )
         self.rows: list[dict[str, float]] = []
         self.sphere = NO_FRICTION
         self.lying: RestMotion | None = None
@@ -132,12 +135,13 @@ class FollowedDrop:
         """Follow the drop to the end of its run."""
         with self.held:
             while self.now.phase < 0:
+                impacts = self.impacts
                 self._make_room()
                 self.go_on(progress is not None)
                 self._note_impacts()
                 if self.now.phase == NEAR_REST:
                     self._decide()
-                if progress is not None:
+                if progress is not None and (self.impacts > impacts or self.now.phase >= 0):
                     progress(self._fraction_done())
         self._end()
 
@@ -149,6 +153,7 @@ class FollowedDrop:
             contact_view(self.system, (0,)).bodies,
             self.manner,
             self.drop,
+            self.recorded.parts,
             self.sphere,
             self.now,
             pause,
@@ -173,9 +178,9 @@ class FollowedDrop:
         if self.impacts == len(drop.rows):
             rows = np.concatenate([drop.rows, np.full_like(drop.rows, np.nan)])
             self.drop = drop._replace(rows=rows)
-        if not has_room(drop.parts):
-            self.drop = self.drop._replace(parts=with_more_room(drop.parts))
-            self.recorded.parts = self.drop.parts
+        recorded = self.recorded
+        if not has_room(recorded.parts):
+            recorded.parts = with_more_room(recorded.parts)
 
     def _note_impacts(self) -> None:
         """Note what the impacts have met that there were since the last time."""
@@ -205,17 +210,16 @@ class FollowedDrop:
 
     def _fraction_done(self) -> float:
         """Return the fraction of the run that is done, in [0, 1]."""
-        state = self.drop.state
         if self.now.phase >= 0:
             return 1.0
-        first_speed = self.drop.rows[0, records.APPROACH] if self.impacts else np.nan
+        rows = self.drop.rows
         return fraction_done(
             self.problem,
             self.impacts,
             self.time,
-            np.array([first_speed]),
-            state[[records.VELOCITY]],
-            state[[records.REST_SPEED]],
+            rows[0, [records.APPROACH]],
+            rows[self.impacts - 1, [records.RELEASE_VELOCITY]],
+            self.drop.state[[records.REST_SPEED]],
         )
 
     # the end

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.core.growth import Recorded, write_growth
+from vibroimpact.dynamics.core.growth import Neighbour, Recorded, write_growth
 from vibroimpact.dynamics.vibrating.contact_view import contact_view
 from vibroimpact.dynamics.vibrating.drop_at_start import first_law_of
 from vibroimpact.dynamics.vibrating.followed_drop import FollowedDrop
-from vibroimpact.dynamics.vibrating.linear_system import State
 from vibroimpact.dynamics.vibrating.radau_eigenbasis import bases_of
 
 
@@ -28,20 +27,22 @@ def growth_of(drop: FollowedDrop) -> Floats:
     """
     growth = np.empty(drop.impacts)
     view = contact_view(drop.recorded.system, (0,))
+    still = view.without_load.bodies
     recorded = Recorded(
-        bases=bases_of(first_law_of(drop.problem).root),
-        bodies=view.bodies,
-        still=view.without_load.bodies,
-        manner=drop.manner,
-        parts=drop.drop.parts,
+        system=view.bodies.system,
+        still=still.system,
+        addresses=drop.manner.addresses,
+        series=drop.manner.series,
+        parts=drop.recorded.parts,
         end=drop.recorded.end.record,
     )
-    write_growth(recorded, _difference_at_start(drop).record, growth)
+    bases = bases_of(first_law_of(drop.problem).root)
+    write_growth(bases, still, recorded, drop.manner.tension, _neighbour_of(drop), growth)
     return growth
 
 
-def _difference_at_start(drop: FollowedDrop) -> State:
-    """Return the difference of a neighbouring drop at the start, per unit relative change."""
+def _neighbour_of(drop: FollowedDrop) -> Neighbour:
+    """Return the neighbour of a drop at the start, per unit relative change."""
     problem = drop.problem
     system = drop.recorded.system
     displacement = np.zeros(system.number)
@@ -53,4 +54,12 @@ def _difference_at_start(drop: FollowedDrop) -> State:
         displacement[0] = -root_mass * float(problem.height)
     else:
         velocity[0] = root_mass * float(problem.speed)
-    return State(displacement, velocity, np.zeros(len(system.rate)))
+    parts = drop.recorded.parts
+    return Neighbour(
+        displacement=displacement,
+        velocity=velocity,
+        local=np.zeros(len(system.rate)),
+        forces=np.zeros(parts.force.shape[1]),
+        numbers=np.full(3, -1),
+        values=np.zeros(7),
+    )

@@ -102,7 +102,14 @@ class WaitingDrop(FollowedDrop):
         motion, elapsed = self._to_touch(flight, float(law.touch_level))
         time, phase = self.told.end_of(flight, start + elapsed, self.impacts)
         after = motion.state_after(time - start)
-        write_flight(self.system.record_of(0), self.drop, motion.start.record, after.record, time)
+        write_flight(
+            self.system.record_of(0),
+            self.drop,
+            self.recorded.parts,
+            motion.start.record,
+            after.record,
+            time,
+        )
         along = None
         if self.oblique is not None:
             along = self.oblique.sphere, self.oblique.state
@@ -231,7 +238,8 @@ class WaitingDrop(FollowedDrop):
     def _rise_in_fluid(self, row: Floats) -> None:
         """Write how high a drop rises through a fluid."""
         numbers = self.drop.state
-        if self.now.phase < 0 and numbers[records.VELOCITY] > 0.0:
+        separates = self.now.phase < 0 or self.now.phase == records.END_BY_REST_SPEED
+        if separates and numbers[records.VELOCITY] > 0.0:
             top = float(self._next_flight().apex()[1][0])
             row[records.REBOUND] = numbers[records.RADIUS] + top
 
