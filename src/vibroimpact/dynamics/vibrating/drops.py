@@ -75,8 +75,9 @@ def follow(
             systems[sphere] = system.with_sphere(sphere[0] ** -0.5, sphere[1] * sphere[0] ** 0.5)
         drop = _kind_of(single)(single, systems[sphere], mass)
         energy_in = _energy_at_start(drop)
-        drop.follow(of_several(progress, number, len(alone)))
-        ended.append(_ended(drop, energy_in, keeps_bounces))
+        with drop.held:
+            drop.follow(of_several(progress, number, len(alone)))
+            ended.append(_ended(drop, energy_in, keeps_bounces))
     return _ended_run(problem, ended)
 
 

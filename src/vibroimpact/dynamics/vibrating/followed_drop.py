@@ -61,11 +61,11 @@ _LEAST_MISSING = 1e-6  # of a restitution of one, with which bounces have an end
 class FollowedDrop:
     """One drop on its way.
 
-    `drop`, `now`: as the core has them. `recorded`: its motion. `rows`: of a drop that waits, what
-    the core does not know of its impacts, by the columns of their table. `system`, `series`: the
-    bodies with the contact where it is, and the compliance in series with the law there. `lying`:
-    how it moves on once it has come to rest. `left`: energy above equilibrium at rest or on a ride
-    [J], else NaN.
+    `drop`, `now`: as the core has them. `held`: laws of other packages, which the core calls as
+    long as it is open. `recorded`: its motion. `rows`: of a drop that waits, what the core does not
+    know of its impacts, by the columns of their table. `system`, `series`: the bodies with the
+    contact where it is, and the compliance in series with the law there. `lying`: how it moves on
+    once it has come to rest. `left`: energy above equilibrium at rest or on a ride [J], else NaN.
 
     Parameters
     ----------
@@ -133,16 +133,15 @@ class FollowedDrop:
 
     def follow(self, progress: Callable[[float], None] | None) -> None:
         """Follow the drop to the end of its run."""
-        with self.held:
-            while self.now.phase < 0:
-                impacts = self.impacts
-                self._make_room()
-                self.go_on(progress is not None)
-                self._note_impacts()
-                if self.now.phase == NEAR_REST:
-                    self._decide()
-                if progress is not None and (self.impacts > impacts or self.now.phase >= 0):
-                    progress(self._fraction_done())
+        while self.now.phase < 0:
+            impacts = self.impacts
+            self._make_room()
+            self.go_on(progress is not None)
+            self._note_impacts()
+            if self.now.phase == NEAR_REST:
+                self._decide()
+            if progress is not None and (self.impacts > impacts or self.now.phase >= 0):
+                progress(self._fraction_done())
         self._end()
 
     def go_on(self, one_impact: bool) -> None:
