@@ -277,8 +277,8 @@ def test_the_bound_of_the_force_is_met_and_not_passed() -> None:
 def test_a_write_off_of_less_than_nothing_fails_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
     entries_of = drops._entries
 
-    def with_less(drop: object, along: dict[str, float]) -> tuple[dict[str, float], float]:
-        entries, added = entries_of(drop, along)
+    def with_less(drop: object) -> tuple[dict[str, float], float]:
+        entries, added = entries_of(drop)
         entries["written_off_at_rest_J"] -= 1.0
         entries["contact_dissipated_J"] += 1.0
         return entries, added
