@@ -24,7 +24,6 @@ from functools import cached_property
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
@@ -52,26 +51,6 @@ def least_energy(system: LinearSystem, approach: float, stored: float) -> float:
     """
     weight = weight_on(system)
     return stored - weight * approach - 0.5 * float(system.compliance[0]) * weight * weight
-
-
-def separates_slower_than(
-    system: LinearSystem, law: CompliantLaw, state: State, speed: float
-) -> bool:
-    """Whether a sphere apart from the surface lacks the energy to reach a separation speed.
-
-    Parameters
-    ----------
-    system : LinearSystem
-        The sphere and the bodies that vibrate.
-    law : CompliantLaw
-        The law of the next contact.
-    state : State
-        The current state.
-    speed : float
-        Speed of the sphere relative to a surface at rest [m/s].
-    """
-    least = least_energy(system, float(law.touch_level), 0.0)
-    return float(system.mechanical_energy(state)) < least + 0.5 * float(system.mass[0]) * speed**2
 
 
 def near_equilibrium(system: LinearSystem, state: State, force: float, indentation: float) -> bool:

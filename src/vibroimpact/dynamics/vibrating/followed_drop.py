@@ -20,7 +20,6 @@ from vibroimpact.dynamics.core.vibrating_drops import follow_vibrating_drop, nex
 from vibroimpact.dynamics.core.vibrating_records import (
     FIRST_LAW,
     FIRST_PART,
-    FLIGHTS,
     HELD,
     IMPACTS,
     IN_CONTACT,
@@ -30,7 +29,6 @@ from vibroimpact.dynamics.motion.flight import Flight
 from vibroimpact.dynamics.motion.progress import fraction_done
 from vibroimpact.dynamics.motion.run_rules import start_of
 from vibroimpact.dynamics.statement.problem import Problem
-from vibroimpact.dynamics.vibrating.contact_equilibrium import ContactEquilibrium
 from vibroimpact.dynamics.vibrating.contact_view import contact_view
 from vibroimpact.dynamics.vibrating.drop_at_start import (
     default_rest_speed,
@@ -52,7 +50,7 @@ from vibroimpact.dynamics.vibrating.recorded_motion import (
     with_more_room,
 )
 from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
-from vibroimpact.dynamics.vibrating.sphere_at_rest import Equilibria, rest_from
+from vibroimpact.dynamics.vibrating.sphere_at_rest import Equilibria
 from vibroimpact.dynamics.vibrating.surface_friction import NO_FRICTION
 
 _LEAST_MISSING = 1e-6  # of a restitution of one, with which bounces have an end
@@ -96,7 +94,7 @@ class FollowedDrop:
         self.lying: RestMotion | None = None
         self.left = np.nan
         self._bases = bases_of(first_law_of(problem).root)
-        self._equilibria = Equilibria()
+        self._equilibria = Equilibria(system)
         if problem.rest_speed is None:
             self.drop.state[records.REST_SPEED] = default_rest_speed(problem, self.first_flight())
 
@@ -115,11 +113,6 @@ class FollowedDrop:
     def impacts(self) -> int:
         """How many impacts there were."""
         return int(self.drop.counts[IMPACTS])
-
-    @property
-    def flights(self) -> int:
-        """How many flights there were."""
-        return int(self.drop.counts[FLIGHTS])
 
     @property
     def time(self) -> float:
@@ -204,7 +197,7 @@ class FollowedDrop:
         """Tell the core whether the contact holds the sphere for good."""
         progress = self.now.progress
         local = self.recorded.local(progress.law)
-        holds = self._equilibria.holds(self.system, local, self.state, progress.force)
+        holds = self._equilibria.holds(local, self.state, progress.force)
         self.now = self.now._replace(phase=HELD if holds else IN_CONTACT)
 
     def _fraction_done(self) -> float:
@@ -245,13 +238,13 @@ class FollowedDrop:
         stored = float(self.drop.rows[self.impacts - 1, records.LEFT_STORED])
         if phase in (records.END_RIDING, records.END_BY_DURATION):
             if not self.system.driven:
-                self.left = ContactEquilibrium(self.system, local).excess(self.state, stored)
+                self.left = self._equilibria.of(local)[0].excess(self.state, stored)
             return
         numbers = self.drop.state
         numbers[records.REST_TIME] = self.time
         if phase == records.END_BY_REST_SPEED:
             self._end_by_bounces()
-        self.lying = rest_from(self.system, local, self.state, stored)
+        self.lying = self._equilibria.rest_from(local, self.state, stored)
         numbers[records.SAG] = self.lying.equilibrium.sag
         numbers[records.STORED] = self.lying.equilibrium.stored
         numbers[records.WRITTEN_OFF] = self.lying.written_off

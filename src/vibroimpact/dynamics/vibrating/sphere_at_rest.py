@@ -19,45 +19,48 @@ from vibroimpact.dynamics.vibrating.rest_motion import RestMotion, bring_to_rest
 
 
 class Equilibria:
-    """The equilibria of a drop under the laws of its contacts, of which the last one is kept."""
+    """The equilibria of a drop under the laws of its contacts, of which the last one is kept.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    system : LinearSystem
+        The sphere and the bodies that vibrate.
+    """
+
+    def __init__(self, system: LinearSystem) -> None:
+        self.system = system
         self._last: tuple[LocalContact, ContactEquilibrium, SteadyResponse | None] | None = None
 
-    def of(
-        self, system: LinearSystem, local: LocalContact
-    ) -> tuple[ContactEquilibrium, SteadyResponse | None]:
+    def of(self, local: LocalContact) -> tuple[ContactEquilibrium, SteadyResponse | None]:
         """Return the equilibrium of a contact, and its steady motion where the plate is shaken."""
         if self._last is None or self._last[0] is not local:
-            equilibrium = ContactEquilibrium(system, local)
+            equilibrium = ContactEquilibrium(self.system, local)
             self._last = local, equilibrium, steady_response(equilibrium)
         return self._last[1:]
 
-    def holds(self, system: LinearSystem, local: LocalContact, state: State, force: float) -> bool:
+    def holds(self, local: LocalContact, state: State, force: float) -> bool:
         """Whether a contact carries the weight, and its force [N] will not vanish again."""
-        is_shaken = system.driven > 0
+        is_shaken = self.system.driven > 0
         if not is_shaken:
-            approach = float(system.approach(state)[0])
+            approach = float(self.system.approach(state)[0])
             overlap = max(approach - local.release_level, 0.0)
-            if not near_equilibrium(system, state, force, overlap):
+            if not near_equilibrium(self.system, state, force, overlap):
                 return False
-        equilibrium, response = self.of(system, local)
+        equilibrium, response = self.of(local)
         if not is_shaken:
             return equilibrium.linear and equilibrium.cannot_separate(state)
         if rides_for_good(equilibrium, state, force):
             return True
         return response is not None and response.carries_for_good(state, force)
 
+    def rest_from(self, local: LocalContact, state: State, stored: float) -> RestMotion:
+        """Return the small oscillations that replace the contact of a sphere that stays.
 
-def rest_from(system: LinearSystem, local: LocalContact, state: State, stored: float) -> RestMotion:
-    """Return the small oscillations that replace the contact of a sphere that stays on the plate.
-
-    The contact stores an energy `stored` [J].
-    """
-    equilibrium = ContactEquilibrium(system, local)
-    if not system.driven:
-        return bring_to_rest(equilibrium, state, stored)
-    response = steady_response(equilibrium)
-    if response is None:
-        return carry(equilibrium, state, stored)
-    return carry_oscillating(response, state, stored)
+        The contact stores an energy `stored` [J].
+        """
+        equilibrium, response = self.of(local)
+        if not self.system.driven:
+            return bring_to_rest(equilibrium, state, stored)
+        if response is None:
+            return carry(equilibrium, state, stored)
+        return carry_oscillating(response, state, stored)

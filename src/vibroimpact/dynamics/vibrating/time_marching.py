@@ -99,9 +99,6 @@ class TimeMarching:
         State at the start.
     tolerance : float
         Relative error allowed at the end of each stretch.
-    scale : tuple of two floats, optional
-        Speed of the motion [m/s] and approximate duration of a contact [s]; by default each contact
-        has its own.
     """
 
     def __init__(
@@ -110,13 +107,11 @@ class TimeMarching:
         definitions: Sequence[ContactDefinition],
         state: State,
         tolerance: float,
-        scale: tuple[float, float] | None = None,
     ) -> None:
         self.system = system
         self.definitions = definitions
         self.state = state
         self.tolerance = tolerance
-        self.scale = scale
         self.next_laws = [definition.law for definition in definitions]
         self.touch_levels = np.array([float(law.touch_level) for law in self.next_laws])
         self.time = 0.0
@@ -247,7 +242,7 @@ class TimeMarching:
             closing = max(other_speeds)
         impact = Impact(number, self.time, closing)
         self.impacts.append(impact)
-        speed, span = self.scale or self._scale(number, law, closing)
+        speed, span = self._scale(number, law, closing)
         self.dents.pop(number, None)
         contact = ActiveContact(
             number,
