@@ -54,9 +54,9 @@ class DeferredFunction:
         """The compiled function, as Python calls it; the Python function if numba does not load."""
         if self._why_not():
             return self.py_func
-        from vibroimpact.compiler.functions import CompiledFunction
+        from vibroimpact.compiler.functions import compiled_function
 
-        return CompiledFunction(self.py_func, self._signature)
+        return compiled_function(self.py_func, self._signature)
 
     @cached_property
     def signature_text(self) -> str:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import lru_cache
 from itertools import count
-from typing import Any, TypeVar
+from typing import Any
 from weakref import WeakValueDictionary
 
 import numpy as np
@@ -114,24 +114,6 @@ def law_coefficients(law: Any) -> Floats:
     else:
         coefficients[: len(law.coefficients)] = law.coefficients
     return coefficients
-
-
-Lent = TypeVar("Lent")
-
-
-def lent(value: Lent) -> Lent:
-    """Return an array, or a tuple with arrays, whose references are not counted.
-
-    In compiled code they are counted wherever an array gets another name, by locked operations,
-    which in a deep call of a large tuple take longer than what is computed. Whoever lends must hold
-    the arrays until what they are lent to has ended, and must not return them.
-
-    Examples
-    --------
-    >>> lent(np.array([1.0, 2.0]))
-    array([1., 2.])
-    """
-    return value
 
 
 def interpreted_function(law_class: type[Any], kind: str) -> Callable[..., Any]:

@@ -5,15 +5,14 @@ Loading this module loads numba.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable
+from contextlib import nullcontext
 from importlib import import_module
 from inspect import signature
-from itertools import chain, count
 from secrets import randbits
 from typing import Any
 
-from numba.core.bytecode import FunctionIdentity
+import numpy as np
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 from numba.extending import overload
@@ -22,8 +21,10 @@ from vibroimpact.compiler import function_values, intrinsics, types
 from vibroimpact.compiler.code_cache import CodeCache
 from vibroimpact.compiler.code_store import compiling_alone
 from vibroimpact.compiler.digest import Digest, NotDigestible
+from vibroimpact.compiler.lending import Lent, Packing, lent_to
 from vibroimpact.compiler.marks import DEFERRED, SCALAR
 from vibroimpact.compiler.notice import say_how_long, say_trouble
+from vibroimpact.compiler.numba_ways import BITS, compiling_as
 from vibroimpact.compiler.symbols import call_by_symbol, is_large
 
 _OPTIONS = {"error_model": "numpy"}
@@ -31,9 +32,6 @@ _OPTIONS = {"error_model": "numpy"}
 
 _SECONDS = 6e-4
 """Time to compile a byte of Python's code [s]."""
-
-_BITS = 62
-"""Of the random numbers by which functions of one name are told apart."""
 
 _REPLACED: dict[Any, Callable[..., Any]] = {}
 """The functions that compiled code calls, by those in whose place it does."""
@@ -103,8 +101,8 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
                 say_trouble(self._cache.trouble)
 
     def _make_ready(self) -> None:
-        with _numbers_from(self._own_number()):
-            self.compile(self._signature_of(types))  # or load
+        with compiling_as(self._own_number()):
+            self.compile(self._own_signature())  # or load
         self.disable_compile()
         self._is_ready = True
         if self._is_inner and self.is_kept and is_large(self._cache.size):
@@ -116,12 +114,17 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
 
         It is that of its code: code finds it by a name with this number in any process.
         """
-        return self._cache.number if self.is_kept else randbits(_BITS)
+        return self._cache.number if self.is_kept else randbits(BITS)
+
+    def _own_signature(self) -> Any:
+        """Return its signature: compiled code lends it its tuples."""
+        signature = self._signature_of(types)
+        return lent_to(signature) if self._is_inner else signature
 
     @property
     def signature_text(self) -> str:
         """The signature, with all that it says of named tuples."""
-        return types.text_of(self._signature_of(types))
+        return types.text_of(self._own_signature())
 
     @property
     def is_kept(self) -> bool:
@@ -181,28 +184,53 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
         return _compiled_named, (self.py_func.__module__, self.py_func.__qualname__, self._is_inner)
 
 
+class LendingFunction(CompiledFunction):
+    """A function with one signature to which Python lends some of its arguments."""
+
+    _entry: Any = None
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call it; it is compiled the first time."""
+        if self._entry is None:
+            self.ready()
+            (result,) = self.overloads.values()
+            self._packings = [
+                Packing(kind.kind) if isinstance(kind, Lent) else None
+                for kind in result.signature.args
+            ]
+            self._entry = result.entry_point
+        passed = list(arguments)
+        kept = []  # as long as the call lasts
+        for number, packing in enumerate(self._packings):
+            if packing is not None:
+                packed = np.frombuffer(packing.pack(arguments[number]), dtype=np.uint8)
+                kept.append(packed)
+                passed[number] = packed.__array_interface__["data"][0]
+        return self._entry(*passed)
+
+
+def compiled_function(
+    function: Callable[..., Any], signature: Callable[[Any], Any]
+) -> CompiledFunction:
+    """Return a function as Python calls it, compiled at its first call.
+
+    Parameters
+    ----------
+    function : callable
+        The Python function.
+    signature : callable
+        Returns numba's signature from `vibroimpact.compiler.types`.
+    """
+    is_lent_to = any(isinstance(kind, Lent) for kind in signature(types).args)
+    return (LendingFunction if is_lent_to else CompiledFunction)(function, signature)
+
+
 def _compiled_named(module: str, name: str, inner: bool) -> Any:
     """Return the compiled function with a name in a module; inner: as compiled code calls it."""
     function: Any = import_module(module)
     for attribute in name.split("."):
         function = getattr(function, attribute)
     return function.inner if inner else function.compiled
-
-
-@contextmanager
-def _numbers_from(own: int) -> Iterator[None]:
-    """Let numba number a function as given, and those compiled with it from a random number on.
-
-    It tells functions of one name apart by these numbers, which begin with 1 in each process. Two
-    of one name (made by a function, such as the forces of two laws) that had one number in two
-    processes would be one function to the linker in a process that loads both.
-    """
-    outer = FunctionIdentity._unique_ids
-    FunctionIdentity._unique_ids = chain([own], count(randbits(_BITS)))
-    try:
-        yield
-    finally:
-        FunctionIdentity._unique_ids = outer
 
 
 def _seconds() -> float:
@@ -234,9 +262,6 @@ def _register_intrinsics() -> None:
         of_address = getattr(intrinsics, f"{kind}_of_address")
         _REPLACED[at_address] = getattr(of_address, "_defn", at_address)
         overload(at_address)(_inserting(of_address))
-    lent = function_values.lent
-    _REPLACED[lent] = getattr(intrinsics.lent_value, "_defn", lent)
-    overload(lent)(_lending)
     multiply = function_values.multiply_row
     _REPLACED[multiply] = getattr(intrinsics.product_of_rows, "_defn", multiply)
     overload(multiply)(_multiplying)
@@ -247,10 +272,6 @@ def _inserting(of_address: Any) -> Callable[..., Any]:
         return lambda address: of_address(address)
 
     return replacement
-
-
-def _lending(value):  # type: ignore[no-untyped-def]
-    return lambda value: intrinsics.lent_value(value)
 
 
 def _multiplying(room, values, matrices, matrix, width, columns, product):  # type: ignore[no-untyped-def]

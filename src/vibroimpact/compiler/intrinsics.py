@@ -6,8 +6,6 @@ from typing import Any
 
 from llvmlite import ir
 from numba.core import cgutils
-from numba.core import types as numba_types
-from numba.core.types.containers import BaseTuple
 from numba.extending import intrinsic
 
 from vibroimpact.compiler import types
@@ -121,28 +119,3 @@ def _vector_of(builder: Any, value: Any) -> Any:
 
 def _zeros() -> Any:
     return ir.Constant(ir.VectorType(ir.DoubleType(), _LANES), [0.0] * _LANES)
-
-
-@intrinsic  # type: ignore[untyped-decorator]
-def lent_value(typing_context: Any, value: Any) -> Any:
-    """Return a value whose arrays are lent, as `function_values.lent`."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return _lent(context, builder, value, arguments[0])
-
-    return value(value), generate
-
-
-def _lent(context: Any, builder: Any, kind: Any, value: Any) -> Any:
-    """Return a value of a type without the references that its arrays hold."""
-    if isinstance(kind, numba_types.Array):
-        array = context.make_array(kind)(context, builder, value)
-        array.meminfo = cgutils.get_null_value(array.meminfo.type)
-        array.parent = cgutils.get_null_value(array.parent.type)
-        return array._getvalue()
-    if isinstance(kind, BaseTuple):
-        for number, member_kind in enumerate(kind):
-            member = builder.extract_value(value, number)
-            member = _lent(context, builder, member_kind, member)
-            value = builder.insert_value(value, member, number)
-    return value

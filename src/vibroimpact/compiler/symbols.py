@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import Any
 
-LARGE = 24000
+LARGE = 8000
 """Size of the machine code from which a function is called by its symbol [bytes]."""
 
 _FUNCTIONS: dict[str, Any] = {}

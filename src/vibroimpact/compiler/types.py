@@ -8,6 +8,8 @@ from typing import Any
 
 from numba import types
 
+from vibroimpact.compiler.lending import Lent
+
 real = types.float64
 integer = types.int64
 boolean = types.boolean
@@ -72,6 +74,11 @@ def of(kind: type) -> types.Type:
     return types.NamedTuple(members, kind)
 
 
+def lent(kind: type) -> types.Type:
+    """Return the type of a named tuple that Python lends to a compiled function."""
+    return Lent(of(kind))
+
+
 def text_of(signature: Any) -> str:
     """Return a text of numba's signature, with all that it says of named tuples."""
     return " ".join([str(signature), *map(_fields, (signature.return_type, *signature.args))])
@@ -79,6 +86,7 @@ def text_of(signature: Any) -> str:
 
 def _fields(kind: Any) -> str:
     """Return the names of the members of a named tuple, which the name of its type leaves out."""
+    kind = getattr(kind, "kind", kind)  # of one that is lent
     members = [_fields(member) for member in getattr(kind, "types", ())]
     return " ".join([str(getattr(kind, "fields", "")), *members])
 

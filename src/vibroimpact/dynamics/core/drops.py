@@ -69,6 +69,7 @@ from vibroimpact.dynamics.core.free_fall import next_touch
 from vibroimpact.dynamics.core.law import law_at_touch, law_remembering
 from vibroimpact.dynamics.core.line import CAPTURED, FAILED
 from vibroimpact.dynamics.core.line_records import LineContact, LineManner
+from vibroimpact.dynamics.core.linear import write_all
 from vibroimpact.dynamics.core.lines import room_of, solve_pair, with_bodies
 from vibroimpact.dynamics.core.records import Law
 from vibroimpact.dynamics.core.static import static_indentation
@@ -121,7 +122,7 @@ def follow_drops(manner: DropManner, drops: Drops, pause: int) -> None:
             fresh = drops.laws[drop, min(impacts, last_law)]
             remember(addresses, manner.lasts, fresh, state[DENT], next_coefficients)
             phase = leave(manner.waits, law, contact, next_coefficients, state, row)
-            coefficients[:] = next_coefficients
+            write_all(coefficients, next_coefficients)
         drops.phases[drop] = phase
         drops.impacts[drop] = impacts
 

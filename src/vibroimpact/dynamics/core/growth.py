@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
-from vibroimpact.compiled import compiled, compressed_at, force_at, lent, levels_at
+from vibroimpact.compiled import compiled, compressed_at, force_at, levels_at
 from vibroimpact.dynamics.core.attempt import basis_of, time_at, weights_at
 from vibroimpact.dynamics.core.contact_records import (
     FLIGHT,
@@ -34,7 +34,7 @@ from vibroimpact.dynamics.core.contact_records import (
 )
 from vibroimpact.dynamics.core.flight import approach_of, dashpot_rate, rigid_rate, state_after
 from vibroimpact.dynamics.core.law import law_at_touch, law_indentation, room_for_laws, write_law_of
-from vibroimpact.dynamics.core.linear import largest_of
+from vibroimpact.dynamics.core.linear import largest_of, write_all
 from vibroimpact.dynamics.core.peak import nodal_value_between, peak_of_force
 from vibroimpact.dynamics.core.records import (
     Bases,
@@ -96,7 +96,7 @@ class Recorded(NamedTuple):
 
 @compiled(
     lambda t: t.void(
-        t.of(Bases), t.of(Bodies), t.of(Recorded), t.integer, t.of(Neighbour), t.vector
+        t.lent(Bases), t.lent(Bodies), t.lent(Recorded), t.integer, t.lent(Neighbour), t.vector
     )
 )
 def write_growth(
@@ -125,11 +125,6 @@ def write_growth(
     growth : array, shape (I,)
         Where the growth is written.
     """
-    # held by the caller
-    bases = lent(bases)
-    still = lent(still)
-    recorded = lent(recorded)
-    neighbour = lent(neighbour)
     parts = recorded.parts
     is_apart = True
     impact = 0
@@ -184,9 +179,9 @@ def difference_of(neighbour: Neighbour) -> State:
 @compiled(lambda t: t.void(t.of(Neighbour), t.of(State)))
 def put(neighbour: Neighbour, difference: State) -> None:
     """Write a difference of the state to a neighbour."""
-    neighbour.displacement[:] = difference.displacement
-    neighbour.velocity[:] = difference.velocity
-    neighbour.local[:] = difference.local
+    write_all(neighbour.displacement, difference.displacement)
+    write_all(neighbour.velocity, difference.velocity)
+    write_all(neighbour.local, difference.local)
 
 
 @compiled(lambda t: t.of(Law)(t.of(Recorded), t.vector, t.real))
@@ -307,7 +302,7 @@ def pass_stretches(
         if force > neighbour.values[LARGEST_FORCE]:
             neighbour.values[LARGEST_FORCE] = force
             neighbour.numbers[STRONGEST] = stretch
-            neighbour.forces[:] = forces[stretch - first]
+            write_all(neighbour.forces, forces[stretch - first])
 
 
 # the law of the neighbouring drop

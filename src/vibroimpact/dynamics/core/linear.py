@@ -67,6 +67,16 @@ def less_product(values: Floats, matrix: Floats, vector: Floats) -> Floats:
     return left
 
 
+@compiled(lambda t: t.void(t.vector, t.vector))
+def write_all(values: Floats, written: Floats) -> None:
+    """Write values over all of an array of the same length.
+
+    Assignment to a slice takes a second to compile.
+    """
+    for number in range(len(written)):
+        values[number] = written[number]
+
+
 @compiled(lambda t: t.void(t.matrix, t.integer, t.vector))
 def write_row(matrix: Floats, row: int, values: Floats) -> None:
     """Write values into the first columns of a row."""

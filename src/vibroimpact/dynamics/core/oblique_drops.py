@@ -52,6 +52,7 @@ from vibroimpact.dynamics.core.free_fall import next_touch
 from vibroimpact.dynamics.core.friction_records import NO_FRICTION
 from vibroimpact.dynamics.core.law import law_at_touch
 from vibroimpact.dynamics.core.line_records import LineManner
+from vibroimpact.dynamics.core.linear import write_all
 from vibroimpact.dynamics.core.lines import room_of, solve_pair
 from vibroimpact.dynamics.core.normal_records import NormalGrid
 from vibroimpact.dynamics.core.records import Law
@@ -124,7 +125,7 @@ def follow_oblique_drops(
             if may_leave and leaves_dent(oblique, drop, contact.deepest, state):
                 state[DENT] = 0.0
                 remember(addresses, True, fresh, 0.0, next_coefficients)
-            coefficients[:] = next_coefficients
+            write_all(coefficients, next_coefficients)
         drops.phases[drop] = phase
         drops.impacts[drop] = impacts
 

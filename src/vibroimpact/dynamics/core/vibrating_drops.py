@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.compiled import compiled, lent, levels_at
+from vibroimpact.compiled import compiled, levels_at
 from vibroimpact.dynamics.core.contact_records import FLIGHT, LAWS, OF_IMPACT, Bodies, Parts
 from vibroimpact.dynamics.core.drop_records import (
     ACCELERATION,
@@ -89,11 +89,11 @@ from vibroimpact.dynamics.core.vibrating_records import (
 
 @compiled(
     lambda t: t.of(Now)(
-        t.of(Bases),
-        t.of(Bodies),
+        t.lent(Bases),
+        t.lent(Bodies),
         t.of(ImpactManner),
-        t.of(VibratingDrop),
-        t.of(Parts),
+        t.lent(VibratingDrop),
+        t.lent(Parts),
         t.of(SlidingSphere),
         t.of(Now),
         t.integer,
@@ -131,11 +131,6 @@ def follow_vibrating_drop(
     pause : int
         Number of impacts after which it is not followed any further.
     """
-    # held by the caller
-    bases = lent(bases)
-    bodies = lent(bodies)
-    drop = lent(drop)
-    parts = lent(parts)
     system = bodies.system
     while True:
         if now.phase == IN_FLIGHT:

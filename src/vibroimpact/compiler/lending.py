@@ -1,0 +1,209 @@
+"""Named tuples that compiled functions lend each other.
+
+Numba hands a tuple over element by element: one with the arrays of a drop takes a thousand
+arguments, and the references of each array are counted at every call. To compile that took most of
+all time. Here a function gets the address of the tuple, and reads of it what it uses when it
+begins. Whoever lends holds the tuple until the call has ended.
+
+From Python a tuple is packed into bytes as compiled code lays it out. Its arrays must not be
+returned, since compiled code does not know who holds them.
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import Any
+
+import numpy as np
+from llvmlite import ir
+from numba.core import cgutils, types
+from numba.core.datamodel import models
+from numba.core.imputils import impl_ret_borrowed
+from numba.core.typeconv import Conversion
+from numba.core.types.containers import BaseNamedTuple, BaseTuple
+from numba.core.typing.templates import AttributeTemplate, infer_getattr
+from numba.extending import NativeValue, lower_cast, lower_getattr_generic, register_model, unbox
+
+
+class Lent(types.Type):
+    """The type of a named tuple that is lent; `kind`: that of the tuple."""
+
+    def __init__(self, kind: Any) -> None:
+        self.kind = kind
+        super().__init__(name=f"lent {kind.name}")
+
+    @property
+    def key(self) -> Any:
+        """What tells it from others."""
+        return self.kind
+
+    def __unliteral__(self) -> Any:
+        """Return what it is as a member of another tuple: the tuple itself."""
+        return self.kind
+
+    def can_convert_from(self, context: Any, other: Any) -> Any:
+        """Return how a tuple becomes one that is lent."""
+        return Conversion.safe if other == self.kind else None
+
+    def can_convert_to(self, context: Any, other: Any) -> Any:
+        """Return how it becomes a tuple of one's own."""
+        return Conversion.safe if other == self.kind else None
+
+    def unify(self, context: Any, other: Any) -> Any:
+        """Return the type of what is either this or the tuple."""
+        return self.kind if other == self.kind else None
+
+
+def has_arrays(kind: Any) -> bool:
+    """Is a type that of a named tuple with arrays?"""
+    if not isinstance(kind, BaseNamedTuple):
+        return False
+    return any(isinstance(member, types.Array) or has_arrays(member) for member in kind.types)
+
+
+def lent_to(signature: Any) -> Any:
+    """Return the signature of a function to which tuples with arrays are lent."""
+    arguments = [Lent(kind) if has_arrays(kind) else kind for kind in signature.args]
+    return signature.return_type(*arguments)
+
+
+@register_model(Lent)
+class _LentModel(models.PrimitiveModel):  # type: ignore[misc]
+    """It is the address of the tuple."""
+
+    def __init__(self, manager: Any, lent: Lent) -> None:
+        super().__init__(manager, lent, manager[lent.kind].get_value_type().as_pointer())
+
+
+@infer_getattr
+class _LentAttributes(AttributeTemplate):  # type: ignore[misc]
+    key = Lent
+
+    def generic_resolve(self, lent: Lent, name: str) -> Any:
+        """Return the type of a member."""
+        kind = lent.kind
+        if name not in kind.fields:
+            return None
+        return _member(kind, kind.fields.index(name))
+
+
+def _member(kind: Any, index: int) -> Any:
+    """Return the type of a member of a lent tuple: tuples with arrays are lent, too."""
+    member = kind.types[index]
+    return Lent(member) if has_arrays(member) else member
+
+
+@lower_getattr_generic(Lent)  # type: ignore[untyped-decorator]
+def _read_member(context: Any, builder: Any, lent: Lent, pointer: Any, name: str) -> Any:
+    """Read a member of a lent tuple, at the start of the function if that was handed to it.
+
+    There the compiler knows that nothing has been written since, and keeps what it has read.
+    """
+    index = lent.kind.fields.index(name)
+    member = _member(lent.kind, index)
+    if _is_known_at_start(builder, pointer):
+        with builder.goto_entry_block():
+            value = _load(builder, pointer, index, member)
+    else:
+        value = _load(builder, pointer, index, member)
+    return impl_ret_borrowed(context, builder, member, value)
+
+
+def _load(builder: Any, pointer: Any, index: int, member: Any) -> Any:
+    address = cgutils.gep_inbounds(builder, pointer, 0, index)
+    return address if isinstance(member, Lent) else builder.load(address)
+
+
+def _is_known_at_start(builder: Any, pointer: Any) -> bool:
+    """Is an address an argument of the function, or was it made of one at the start?"""
+    if isinstance(pointer, ir.Argument):
+        return True
+    is_made_at_start = getattr(pointer, "parent", None) is builder.function.entry_basic_block
+    return isinstance(pointer, ir.GEPInstr) and is_made_at_start
+
+
+@lower_cast(BaseNamedTuple, Lent)  # type: ignore[untyped-decorator]
+def _lend(context: Any, builder: Any, kind: Any, lent: Lent, value: Any) -> Any:
+    """Lend a tuple: its value is written to the stack."""
+    with builder.goto_entry_block():
+        pointer = builder.alloca(value.type)
+    builder.store(value, pointer)
+    return pointer
+
+
+@lower_cast(Lent, BaseNamedTuple)  # type: ignore[untyped-decorator]
+def _take(context: Any, builder: Any, lent: Lent, kind: Any, pointer: Any) -> Any:
+    """Make a tuple of one's own from one that is lent."""
+    return builder.load(pointer)
+
+
+@unbox(Lent)  # type: ignore[untyped-decorator]
+def _from_address(lent: Lent, number: Any, c: Any) -> Any:
+    """Take the address of a packed tuple from Python."""
+    pointer = c.pyapi.long_as_voidptr(number)
+    pointer = c.builder.bitcast(pointer, c.context.get_value_type(lent))
+    return NativeValue(pointer, is_error=cgutils.is_not_null(c.builder, c.pyapi.err_occurred()))
+
+
+class Packing:
+    """How a named tuple is laid out in bytes.
+
+    Parameters
+    ----------
+    kind : numba's type
+        That of the tuple.
+    """
+
+    def __init__(self, kind: Any) -> None:
+        self._struct = struct.Struct(f"@{_format_of(kind)}")
+        self._kind = kind
+
+    def pack(self, values: Any) -> bytes:
+        """Return the bytes of a tuple, which must be kept as long as these are used."""
+        numbers: list[Any] = []
+        _add(numbers, self._kind, values)
+        return self._struct.pack(*numbers)
+
+
+_ALIGNED = "0q"
+
+_FORMATS = {types.float64: "d", types.int64: "q", types.boolean: "?"}
+
+
+def _format_of(kind: Any) -> str:
+    """Return the format of a type for `struct`."""
+    if isinstance(kind, types.Array):
+        return "q" * (5 + 2 * kind.ndim)
+    if isinstance(kind, BaseTuple):
+        return _ALIGNED + "".join(map(_format_of, kind.types)) + _ALIGNED
+    return _FORMATS[kind]
+
+
+def _add(numbers: list[Any], kind: Any, value: Any) -> None:
+    """Add what a value consists of."""
+    if isinstance(kind, types.Array):
+        _add_array(numbers, kind, value)
+    elif isinstance(kind, BaseTuple):
+        for member, item in zip(kind.types, value, strict=True):
+            _add(numbers, member, item)
+    else:
+        numbers.append(value)
+
+
+def _add_array(numbers: list[Any], kind: Any, array: np.ndarray[Any, Any]) -> None:
+    """Add what numba keeps of an array; that nobody counts its references are the two zeros."""
+    if array.dtype.num != _DTYPES[kind.dtype] or array.ndim != kind.ndim:
+        raise TypeError(f"{kind} is not an array of {array.dtype} of shape {array.shape}")
+    if not array.flags.c_contiguous:
+        raise TypeError(f"{kind} is not an array with gaps")
+    numbers += (0, 0, array.size, array.itemsize, array.__array_interface__["data"][0])
+    numbers += array.shape
+    numbers += array.strides
+
+
+_DTYPES = {
+    types.float64: np.dtype(np.float64).num,
+    types.int64: np.dtype(np.int64).num,
+    types.boolean: np.dtype(np.bool_).num,
+    types.complex128: np.dtype(np.complex128).num,
+}
