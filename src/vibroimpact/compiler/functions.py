@@ -12,7 +12,6 @@ from inspect import signature
 from secrets import randbits
 from typing import Any
 
-import numpy as np
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 from numba.extending import overload
@@ -21,7 +20,7 @@ from vibroimpact.compiler import function_values, intrinsics, types
 from vibroimpact.compiler.code_cache import CodeCache
 from vibroimpact.compiler.code_store import compiling_alone
 from vibroimpact.compiler.digest import Digest, NotDigestible
-from vibroimpact.compiler.lending import Lent, Packing, lent_to
+from vibroimpact.compiler.lending import Lent, Packing, address_of, lent_to
 from vibroimpact.compiler.marks import DEFERRED, SCALAR
 from vibroimpact.compiler.notice import say_how_long, say_trouble
 from vibroimpact.compiler.numba_ways import BITS, compiling_as
@@ -203,9 +202,9 @@ class LendingFunction(CompiledFunction):
         kept = []  # as long as the call lasts
         for number, packing in enumerate(self._packings):
             if packing is not None:
-                packed = np.frombuffer(packing.pack(arguments[number]), dtype=np.uint8)
+                packed = packing.pack(arguments[number])
                 kept.append(packed)
-                passed[number] = packed.__array_interface__["data"][0]
+                passed[number] = address_of(packed)
         return self._entry(*passed)
 
 

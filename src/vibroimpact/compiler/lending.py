@@ -5,22 +5,26 @@ arguments, and the references of each array are counted at every call. To compil
 all time. Here a function gets the address of the tuple, and reads of it what it uses when it
 begins. Whoever lends holds the tuple until the call has ended.
 
-From Python a tuple is packed into bytes as compiled code lays it out. Its arrays must not be
-returned, since compiled code does not know who holds them.
+From Python a tuple is packed into bytes as compiled code lays it out. Parts of its arrays must not
+be returned, since compiled code does not know who holds them.
 """
 
 from __future__ import annotations
 
+import ctypes
 import struct
-from typing import Any
+from collections.abc import Callable
+from operator import attrgetter
+from typing import Any, NamedTuple
 
 import numpy as np
 from llvmlite import ir
+from numba import _helperlib
 from numba.core import cgutils, types
 from numba.core.datamodel import models
 from numba.core.imputils import impl_ret_borrowed
 from numba.core.typeconv import Conversion
-from numba.core.types.containers import BaseNamedTuple, BaseTuple
+from numba.core.types.containers import BaseNamedTuple
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import NativeValue, lower_cast, lower_getattr_generic, register_model, unbox
 
@@ -146,7 +150,7 @@ def _from_address(lent: Lent, number: Any, c: Any) -> Any:
 
 
 class Packing:
-    """How a named tuple is laid out in bytes.
+    """How a named tuple is laid out in memory.
 
     Parameters
     ----------
@@ -155,50 +159,80 @@ class Packing:
     """
 
     def __init__(self, kind: Any) -> None:
-        self._struct = struct.Struct(f"@{_format_of(kind)}")
-        self._kind = kind
+        self._format = "@"
+        self._numbers: list[str] = []
+        self._arrays: list[str] = []
+        self._places: list[_Place] = []
+        self._append(kind, "")
+        self._struct = struct.Struct(self._format)
+        self._numbers_of = _getter(self._numbers)
+        self._arrays_of = _getter(self._arrays)
 
-    def pack(self, values: Any) -> bytes:
-        """Return the bytes of a tuple, which must be kept as long as these are used."""
-        numbers: list[Any] = []
-        _add(numbers, self._kind, values)
-        return self._struct.pack(*numbers)
+    def _append(self, kind: Any, name: str) -> None:
+        """Append a type to the format. Tuples and arrays are aligned as eight bytes are."""
+        if isinstance(kind, types.Array):
+            self._format += _ALIGNED
+            offset = struct.calcsize(self._format)
+            self._places.append(_Place(offset, _DTYPES[kind.dtype], kind.ndim))
+            self._arrays.append(name)
+            self._format += f"{_WORD * (5 + 2 * kind.ndim)}x"
+        elif isinstance(kind, BaseNamedTuple):
+            self._format += _ALIGNED
+            for field, member in zip(kind.fields, kind.types, strict=True):
+                self._append(member, f"{name}.{field}" if name else field)
+            self._format += _ALIGNED
+        else:
+            self._numbers.append(name)
+            self._format += _FORMATS[kind]
+
+    def pack(self, values: Any) -> np.ndarray[Any, Any]:
+        """Return the bytes of a tuple, which must be kept with it as long as these are used."""
+        content = bytearray(self._struct.pack(*self._numbers_of(values)))
+        packed = np.frombuffer(content, dtype=np.uint8)
+        start = address_of(packed)
+        arrays = self._arrays_of(values)
+        for name, array, (offset, dtype, dimensions) in zip(
+            self._arrays, arrays, self._places, strict=True
+        ):
+            is_of_kind = array.dtype.num == dtype and array.ndim == dimensions
+            if not (is_of_kind and array.flags.c_contiguous):  # compiled code would not notice
+                shape = f"an array of {array.dtype} of shape {array.shape}"
+                raise TypeError(f"{name} cannot be {shape}, or one with gaps")
+            _describe(array, start + offset)
+        return packed
 
 
+class _Place(NamedTuple):
+    """Where an array is described [bytes], the number of its elements' type, its dimensions."""
+
+    offset: int
+    dtype: int
+    dimensions: int
+
+
+def _getter(names: list[str]) -> Callable[[Any], tuple[Any, ...]]:
+    """Return a function that takes members, and members of members, from a tuple."""
+    if not names:
+        return lambda values: ()
+    if len(names) == 1:
+        take = attrgetter(*names)
+        return lambda values: (take(values),)
+    return attrgetter(*names)
+
+
+def address_of(array: np.ndarray[Any, Any]) -> int:
+    """Return the address of the elements of an array."""
+    return int(array.__array_interface__["data"][0])
+
+
+_WORD = 8
 _ALIGNED = "0q"
-
 _FORMATS = {types.float64: "d", types.int64: "q", types.boolean: "?"}
 
-
-def _format_of(kind: Any) -> str:
-    """Return the format of a type for `struct`."""
-    if isinstance(kind, types.Array):
-        return "q" * (5 + 2 * kind.ndim)
-    if isinstance(kind, BaseTuple):
-        return _ALIGNED + "".join(map(_format_of, kind.types)) + _ALIGNED
-    return _FORMATS[kind]
-
-
-def _add(numbers: list[Any], kind: Any, value: Any) -> None:
-    """Add what a value consists of."""
-    if isinstance(kind, types.Array):
-        _add_array(numbers, kind, value)
-    elif isinstance(kind, BaseTuple):
-        for member, item in zip(kind.types, value, strict=True):
-            _add(numbers, member, item)
-    else:
-        numbers.append(value)
-
-
-def _add_array(numbers: list[Any], kind: Any, array: np.ndarray[Any, Any]) -> None:
-    """Add what numba keeps of an array; that nobody counts its references are the two zeros."""
-    if array.dtype.num != _DTYPES[kind.dtype] or array.ndim != kind.ndim:
-        raise TypeError(f"{kind} is not an array of {array.dtype} of shape {array.shape}")
-    if not array.flags.c_contiguous:
-        raise TypeError(f"{kind} is not an array with gaps")
-    numbers += (0, 0, array.size, array.itemsize, array.__array_interface__["data"][0])
-    numbers += array.shape
-    numbers += array.strides
+# writes what numba keeps of an array to an address
+_describe = ctypes.PYFUNCTYPE(ctypes.c_int, ctypes.py_object, ctypes.c_void_p)(
+    _helperlib.c_helpers["adapt_ndarray"]  # type: ignore[attr-defined]
+)
 
 
 _DTYPES = {

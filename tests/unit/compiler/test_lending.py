@@ -111,5 +111,5 @@ def test_arrays_of_a_tuple_that_python_lends_are_written():
 )
 def test_other_arrays_are_refused(matrix):
     outer = an_outer()._replace(matrix=np.asfortranarray(matrix) if matrix.ndim == 2 else matrix)
-    with pytest.raises(TypeError, match="is not an array"):
+    with pytest.raises(TypeError, match="matrix cannot be an array"):
         doubled(outer)
