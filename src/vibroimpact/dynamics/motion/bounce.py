@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Protocol, TypeVar, overload, runtime_checkable
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.motion.along import ContactAlong, Sphere, State
@@ -29,6 +30,31 @@ class Bounce:
     oblique: tuple[Sphere, State] | None = None
     along: ContactAlong | None = None
     ride: Ride | None = None
+
+
+MadeBounce = TypeVar("MadeBounce", bound=Bounce)
+
+
+class MadeBounces(Sequence[MadeBounce]):
+    """Bounces of one drop that are made where they are read.
+
+    A run may have a hundred thousand of them, of which only numbers are kept.
+    """
+
+    @overload
+    def __getitem__(self, index: int) -> MadeBounce: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[MadeBounce]: ...
+
+    def __getitem__(self, index: int | slice) -> MadeBounce | list[MadeBounce]:
+        if isinstance(index, slice):
+            return [self._bounce(number) for number in range(*index.indices(len(self)))]
+        return self._bounce(range(len(self))[index])
+
+    @abstractmethod
+    def _bounce(self, number: int) -> MadeBounce:
+        """Make the bounce with a number, from 0."""
 
 
 @runtime_checkable

@@ -7,6 +7,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.motion.columns import (
+    CARRIED_IMPACT_COLUMNS,
+    OBLIQUE_IMPACT_COLUMNS,
+    SHAKEN_IMPACT_COLUMNS,
+)
+from vibroimpact.dynamics.statement.problem import Problem
 
 
 def table_of(rows: Sequence[Mapping[str, float]], columns: Sequence[str]) -> dict[str, Floats]:
@@ -18,6 +24,20 @@ def table_of(rows: Sequence[Mapping[str, float]], columns: Sequence[str]) -> dic
     {'time_s': array([0.5, nan])}
     """
     return {name: np.array([row.get(name, np.nan) for row in rows]) for name in columns}
+
+
+def further_columns(problem: Problem) -> list[str]:
+    """Return the columns that a table of impacts has for what moves, rubs or flows."""
+    columns: list[str] = []
+    if problem.motion is not None:
+        columns += SHAKEN_IMPACT_COLUMNS
+    if problem.oblique is not None:
+        columns += OBLIQUE_IMPACT_COLUMNS
+        if problem.motion is not None:
+            columns += CARRIED_IMPACT_COLUMNS
+    if problem.fluid is not None:
+        columns.append(f"{problem.fluid.key}_lost_J")
+    return columns
 
 
 def stacked_tables(

@@ -2,16 +2,29 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 
-from vibroimpact.contact.law import ContactLaw
+from vibroimpact.arrays import Floats
+from vibroimpact.contact.law import CompliantLaw, ContactLaw
+from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core import stop_rules
 from vibroimpact.dynamics.core.drop_records import StopRules
 from vibroimpact.dynamics.statement.outcome import Outcome
 from vibroimpact.dynamics.statement.problem import MOST_IMPACTS, Problem
 
+_LEAST_REST_SPEED = 1e-6  # of the first approach speed
 _APART = 4e-15  # of the amplitude of a shaken plate: the rounding error of its place
+
+
+class FirstFlight(Protocol):
+    """Flights of drops, which touch the plate."""
+
+    def touch(self, gap: Floats) -> tuple[Floats, Floats]:
+        """Return times [s] and speeds [m/s] at which their gaps are these [m] (B,)."""
+
 
 OUTCOME_CODES = np.array([Outcome(ending).code for ending in records.ENDINGS])
 """Codes of outcomes by the numbers of endings."""
@@ -44,6 +57,32 @@ def stop_rules_of(problem: Problem) -> StopRules:
         rules.append((stop_rules.BESIDE_PLATE, 0.0, records.END_BESIDE))
     kinds, values, endings = zip(*rules, strict=True)
     return StopRules(np.array(kinds), np.array(values, dtype=float), np.array(endings))
+
+
+def default_rest_speed(
+    law: ContactLaw, flight: FirstFlight, mass: Floats, gravity: Floats
+) -> Floats:
+    """Return the speeds of separation below which drops without a stated one rest [m/s] (B,).
+
+    From it a sphere would rise by its static indentation. It is at least 1e-6 of the first approach
+    speed, which is what it is under a law without a force.
+
+    Parameters
+    ----------
+    law : ContactLaw
+        That of the first impact.
+    flight : Flight
+        The first flights.
+    mass, gravity : array, shape (B,)
+        Of the spheres [kg], and what accelerates them onto the plate [m/s^2].
+    """
+    _, speed = flight.touch(np.zeros(1))
+    least = _LEAST_REST_SPEED * speed
+    if not isinstance(law, CompliantLaw):
+        return least
+    sag = static_indentation(law, mass * gravity) - law.touch_level
+    speeds: Floats = np.maximum(np.sqrt(2.0 * gravity * sag), least)
+    return speeds
 
 
 def start_of(problem: Problem) -> tuple[float, float]:

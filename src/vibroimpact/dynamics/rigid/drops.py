@@ -11,7 +11,6 @@ import numpy as np
 
 from vibroimpact.arrays import Drops as Indices
 from vibroimpact.arrays import Floats
-from vibroimpact.bodies.ball import mean_density
 from vibroimpact.compiled import interpreted
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.dynamics.core import drop_records as records
@@ -228,18 +227,11 @@ def _take_laws_at_touch(problem: Problem, drops: Drops, held: ExitStack) -> None
 
 
 def _law_at(problem: Problem, number: int, drops: Indices, speed: Floats) -> ContactLaw:
-    """Return the law of an impact, counted from 0, of some drops at their approach speeds [m/s].
-
-    Its restitution is what a liquid leaves of it.
-    """
+    """Return the law of an impact, counted from 0, of some drops at their approach speeds [m/s]."""
     laws = laws_of(problem)
-    law = problem.law_at(laws[min(number, len(laws) - 1)].take(drops), speed)
-    if problem.liquid is None:
-        return law
-    none = np.zeros(math.prod(problem.shape))
-    radius = (problem.sphere.contact_offset + none)[drops]
-    mass = (problem.sphere.mass + none)[drops]
-    return problem.liquid.take(drops).around(law, speed, radius, mean_density(mass, radius))
+    law = laws[min(number, len(laws) - 1)].take(drops)
+    of_drops = problem if problem.liquid is None else problem.take(drops)
+    return of_drops.law_at_touch(law, speed)
 
 
 def _is_asked_at_touch(problem: Problem) -> bool:

@@ -6,8 +6,6 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.bodies.ball import mean_density
-from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core.drop_records import DropManner, Drops, FreeFall, ObliqueDrops
 from vibroimpact.dynamics.core.drops import write_touch_gaps
@@ -15,9 +13,8 @@ from vibroimpact.dynamics.core.stop_rules import first_end
 from vibroimpact.dynamics.fluids.fluid import Fluid
 from vibroimpact.dynamics.motion.along import State, spheres_of
 from vibroimpact.dynamics.motion.flight_in_fluid import FluidFlight
+from vibroimpact.dynamics.motion.run_rules import default_rest_speed
 from vibroimpact.dynamics.statement.problem import Problem
-
-_LEAST_REST_SPEED = 1e-6  # of the first approach speed
 
 
 class FluidDrops:
@@ -54,23 +51,14 @@ class FluidDrops:
         self.liquid_at_start = self.energy_of_liquid(drops.state[:, records.VELOCITY])
 
     def _give_rest_speeds(self, problem: Problem, drops: Drops) -> None:
-        """Give drops a rest speed unless they have one.
-
-        That is the speed from which they would rise by their static indentation, and at least 1e-6
-        of the first approach speed.
-        """
+        """Give drops a rest speed unless they have one."""
         if problem.rest_speed is not None:
             return
-        every = np.arange(len(drops.phases))
-        _, speed = self.flights(drops, every).touch(np.zeros(1))
-        least = _LEAST_REST_SPEED * speed
-        law = problem.law_of(0)
-        if isinstance(law, CompliantLaw):
-            state = drops.state.T
-            weight = state[records.MASS] * state[records.GRAVITY]
-            sag = static_indentation(law, weight) - law.touch_level
-            least = np.maximum(np.sqrt(2.0 * state[records.GRAVITY] * sag), least)
-        drops.state[:, records.REST_SPEED] = least
+        flights = self.flights(drops, np.arange(len(drops.phases)))
+        state = drops.state.T
+        drops.state[:, records.REST_SPEED] = default_rest_speed(
+            problem.law_of(0), flights, state[records.MASS], state[records.GRAVITY]
+        )
 
     def flights(self, drops: Drops, numbers: Indices) -> FluidFlight:
         """Return the flights that some drops are about to make."""

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, overload
+from typing import NamedTuple
 
 import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
-from vibroimpact.bodies.ball import mean_density
 from vibroimpact.contact.law import CompliantLaw, InstantaneousLaw
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.motion.along import (
@@ -20,7 +18,7 @@ from vibroimpact.dynamics.motion.along import (
     State,
     spheres_of,
 )
-from vibroimpact.dynamics.motion.bounce import Bounce
+from vibroimpact.dynamics.motion.bounce import Bounce, MadeBounces
 from vibroimpact.dynamics.motion.flight import Flight
 from vibroimpact.dynamics.motion.impact_conditions import ImpactConditions, impact_conditions_of
 from vibroimpact.dynamics.rigid.rubbed_contact import RubbedContact
@@ -77,7 +75,7 @@ class RecordedDrops:
 
 
 @dataclass(frozen=True, eq=False)
-class RecordedDrop(Sequence[Bounce]):
+class RecordedDrop(MadeBounces[Bounce]):
     """The flights and contacts of one drop that the core followed, made where they are read.
 
     Parameters are those of `RecordedDrops`, of one drop.
@@ -91,17 +89,6 @@ class RecordedDrop(Sequence[Bounce]):
 
     def __len__(self) -> int:
         return self.flights
-
-    @overload
-    def __getitem__(self, index: int) -> Bounce: ...
-
-    @overload
-    def __getitem__(self, index: slice) -> list[Bounce]: ...
-
-    def __getitem__(self, index: int | slice) -> Bounce | list[Bounce]:
-        if isinstance(index, slice):
-            return [self._bounce(number) for number in range(*index.indices(len(self)))]
-        return self._bounce(range(len(self))[index])
 
     def _bounce(self, number: int) -> Bounce:
         flight = self._flight(number)
@@ -191,11 +178,7 @@ class RecordedDrop(Sequence[Bounce]):
 
     def _law(self, number: int, speed: Floats) -> CompliantLaw:
         """Return the law of an impact at an approach speed [m/s], with its memory."""
-        law = self.problem.law_at(self.problem.law_of(number), speed)
-        if self.problem.liquid is not None:
-            radius = self.problem.sphere.contact_offset * np.ones(1)
-            density = mean_density(self.problem.sphere.mass * np.ones(1), radius)
-            law = self.problem.liquid.around(law, speed, radius, density)
+        law = self.problem.law_at_touch(self.problem.law_of(number), speed)
         assert isinstance(law, CompliantLaw)
         if not self.problem.memory_lasts:
             return law

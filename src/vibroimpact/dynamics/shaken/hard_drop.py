@@ -10,13 +10,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from vibroimpact.bodies.ball import mean_density
 from vibroimpact.contact.law import InstantaneousLaw
 from vibroimpact.dynamics.core.drop_records import AT_TOUCH
 from vibroimpact.dynamics.motion.flight import Flight
 from vibroimpact.dynamics.motion.progress import fraction_done
 from vibroimpact.dynamics.motion.ride import Ride
-from vibroimpact.dynamics.motion.run_rules import OUTCOME_CODES, start_of
+from vibroimpact.dynamics.motion.run_rules import OUTCOME_CODES, default_rest_speed, start_of
 from vibroimpact.dynamics.oblique.told_flights import ToldFlights
 from vibroimpact.dynamics.shaken.recorded_drop import HardBounces
 from vibroimpact.dynamics.statement.outcome import OUTCOMES, Outcome
@@ -29,7 +28,6 @@ from vibroimpact.dynamics.vibrating.next_touch import next_touch
 # in radians of the fastest harmonic motion: first time after a launch at which the gap is evaluated
 _FIRST_TIME = 1e-6
 _GAP = 1e-13  # of the plate's motion: a gap beyond rounding
-_LEAST_REST_SPEED = 1e-6  # of the first approach speed
 _LEAST_MISSING = 1e-6  # of a restitution of one, with which a ride counts as rest
 
 
@@ -68,8 +66,10 @@ class HardDrop:
         fall = self.mass * (0.5 * self.velocity**2 + self.gravity * self.gap)
         self.energy_in = fall + self.told.energy_at_start()
         if problem.rest_speed is None:
-            _, speed = self._flight().touch(np.zeros(1))
-            self.rest_speed = _LEAST_REST_SPEED * float(speed[0])
+            mass = np.array([self.mass])
+            gravity = np.array([self.gravity])
+            law = problem.law_of(0)
+            self.rest_speed = float(default_rest_speed(law, self._flight(), mass, gravity)[0])
         else:
             self.rest_speed = float(problem.rest_speed)
 
@@ -159,17 +159,9 @@ class HardDrop:
     # -----------------------------------------------------------------------------------------
 
     def _law_at(self, speed: float) -> InstantaneousLaw:
-        """Return the law of the next impact at an approach speed [m/s].
-
-        Its restitution is what a liquid leaves of it.
-        """
+        """Return the law of the next impact at an approach speed [m/s]."""
         problem = self.problem
-        speeds = np.array([speed])
-        law = problem.law_at(problem.law_of(len(self.rows) - 1), speeds)
-        if problem.liquid is not None:
-            radius = np.array([self.radius])
-            density = mean_density(np.array([self.mass]), radius)
-            law = problem.liquid.around(law, speeds, radius, density)
+        law = problem.law_at_touch(problem.law_of(len(self.rows) - 1), np.array([speed]))
         assert isinstance(law, InstantaneousLaw)  # others vibrate on a shaken plate
         return law.take(0)
 

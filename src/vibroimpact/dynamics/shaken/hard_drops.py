@@ -9,14 +9,11 @@ import numpy as np
 from vibroimpact.dynamics.motion.along import friction_parts
 from vibroimpact.dynamics.motion.bounce import BouncesOfSeveral
 from vibroimpact.dynamics.motion.columns import (
-    CARRIED_IMPACT_COLUMNS,
     IMPACT_COLUMNS,
-    OBLIQUE_IMPACT_COLUMNS,
-    SHAKEN_IMPACT_COLUMNS,
 )
 from vibroimpact.dynamics.motion.ended_run import EndedRun
 from vibroimpact.dynamics.motion.energy import close_ledger, ledger_holds
-from vibroimpact.dynamics.motion.impact_rows import stacked_tables, table_of
+from vibroimpact.dynamics.motion.impact_rows import further_columns, stacked_tables, table_of
 from vibroimpact.dynamics.motion.progress import of_several
 from vibroimpact.dynamics.motion.rest import Rest
 from vibroimpact.dynamics.shaken.hard_drop import HardDrop
@@ -70,7 +67,7 @@ def _ended_run(problem: Problem, drops: Sequence[HardDrop], *, keeps_bounces: bo
         left=np.full(len(drops), np.nan),
         lying=(None,) * len(drops),
     )
-    columns = _columns_of(problem)
+    columns = [*IMPACT_COLUMNS, *further_columns(problem)]
     return EndedRun(
         problem,
         stacked_tables([table_of(drop.rows, columns) for drop in drops], columns),
@@ -80,13 +77,3 @@ def _ended_run(problem: Problem, drops: Sequence[HardDrop], *, keeps_bounces: bo
         rest,
         BouncesOfSeveral([drop.bounces for drop in drops]) if keeps_bounces else None,
     )
-
-
-def _columns_of(problem: Problem) -> list[str]:
-    """Return the columns of the table of impacts."""
-    columns = [*IMPACT_COLUMNS, *SHAKEN_IMPACT_COLUMNS]
-    if problem.oblique is not None:
-        columns += [*OBLIQUE_IMPACT_COLUMNS, *CARRIED_IMPACT_COLUMNS]
-    if problem.fluid is not None:
-        columns.append(f"{problem.fluid.key}_lost_J")
-    return columns

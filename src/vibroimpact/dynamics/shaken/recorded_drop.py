@@ -6,14 +6,12 @@ A run may have a hundred thousand of them, of which only numbers are kept.
 from __future__ import annotations
 
 from array import array
-from collections.abc import Sequence
-from typing import overload
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.motion.along import ImpulseAlong, Sphere, State
-from vibroimpact.dynamics.motion.bounce import Bounce
+from vibroimpact.dynamics.motion.bounce import Bounce, MadeBounces
 from vibroimpact.dynamics.motion.flight import Flight
 from vibroimpact.dynamics.motion.flight_in_fluid import flight_of
 from vibroimpact.dynamics.motion.ride import Ride
@@ -30,7 +28,7 @@ ride after it [s], NaN without an impact; what friction took in this [J]; the me
 """
 
 
-class HardBounces(Sequence[Bounce]):
+class HardBounces(MadeBounces[Bounce]):
     """The flights and impacts of one drop.
 
     Parameters
@@ -65,17 +63,6 @@ class HardBounces(Sequence[Bounce]):
 
     def __len__(self) -> int:
         return len(self._numbers) // _NUMBERS
-
-    @overload
-    def __getitem__(self, index: int) -> Bounce: ...
-
-    @overload
-    def __getitem__(self, index: slice) -> list[Bounce]: ...
-
-    def __getitem__(self, index: int | slice) -> Bounce | list[Bounce]:
-        if isinstance(index, slice):
-            return [self._bounce(number) for number in range(*index.indices(len(self)))]
-        return self._bounce(range(len(self))[index])
 
     def _bounce(self, number: int) -> Bounce:
         first = number * _NUMBERS

@@ -7,7 +7,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from vibroimpact.arrays import Array
+from vibroimpact.arrays import Array, Indices
 from vibroimpact.bodies.ball import SOLID
 from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.errors import InputError
@@ -123,7 +123,7 @@ class Oblique:
         """Return the same where the sphere has a part of its weight, as in a liquid."""
         return replace(self, gravity=(self.gravity[0] * part, self.gravity[1] * part))
 
-    def take(self, drop: int | slice) -> Self:
+    def take(self, drop: int | slice | Indices) -> Self:
         """Return what one drop of a batch has, or some."""
 
         def one(value: Any) -> Any:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from vibroimpact.arrays import Array, Complex, Floats
+from vibroimpact.arrays import Array, Complex, Floats, Indices
 from vibroimpact.bodies.ball import SOLID, mean_density
 from vibroimpact.bodies.body import Body
 from vibroimpact.contact.friction.law import CompliantFriction
@@ -558,13 +558,20 @@ class Problem:
             {name: held(function, speed) for name, function in self.by_speed.items()}
         )
 
+    def law_at_touch(self, law: ContactLaw, speed: Array) -> ContactLaw:
+        """Return a law at an approach speed [m/s], with what a liquid leaves of its restitution."""
+        law = self.law_at(law, speed)
+        if self.liquid is None:
+            return law
+        return self.liquid.around(law, speed, self.sphere.contact_offset, self.sphere_density)
+
     def alone(self) -> list[Problem]:
         """Return the problems of the drops, one by one."""
         if self.shape == ():
             return [self]
         return [self.take(drop) for drop in range(self.shape[0])]
 
-    def take(self, drop: int | slice) -> Problem:
+    def take(self, drop: int | slice | Indices) -> Problem:
         """Return the problem of one drop of a batch, or of some."""
 
         def one(value: Any) -> Any:

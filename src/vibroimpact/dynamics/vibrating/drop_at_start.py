@@ -9,7 +9,6 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import law_addresses
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core.contact_records import OF_IMPACT, Manner, Peaks, Progress
 from vibroimpact.dynamics.core.events import ENDS, TENSIONS
@@ -20,7 +19,6 @@ from vibroimpact.dynamics.core.vibrating_records import (
     Now,
     VibratingDrop,
 )
-from vibroimpact.dynamics.motion.flight import Flight
 from vibroimpact.dynamics.motion.law_coefficients import coefficients_of
 from vibroimpact.dynamics.motion.run_rules import laws_of, start_of, stop_rules_of
 from vibroimpact.dynamics.statement.problem import MOST_IMPACTS, Problem
@@ -116,18 +114,6 @@ def _numbers_at_start(problem: Problem) -> Floats:
     numbers[records.END_TIME] = np.nan
     numbers[records.INERTIA] = problem.flight_inertia
     return numbers
-
-
-def default_rest_speed(problem: Problem, flight: Flight) -> float:
-    """Return the speed from which a drop would rise by its static indentation [m/s].
-
-    It is at least 1e-6 of the first approach speed. `flight`: its first one.
-    """
-    law = first_law_of(problem)
-    least = 1e-6 * float(flight.touch(np.zeros(1))[1][0])
-    weight = np.array([problem.sphere.mass * problem.net_gravity])
-    sag = float(static_indentation(law, weight)[0] - law.touch_level)
-    return max(float(np.sqrt(2.0 * problem.net_gravity * sag)), least)
 
 
 def now_at_start(problem: Problem, drop: VibratingDrop, state: State) -> Now:

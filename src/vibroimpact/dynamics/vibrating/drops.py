@@ -13,15 +13,12 @@ from vibroimpact.dynamics.core import vibrating_records
 from vibroimpact.dynamics.motion.along import friction_parts
 from vibroimpact.dynamics.motion.bounce import BouncesOfSeveral
 from vibroimpact.dynamics.motion.columns import (
-    CARRIED_IMPACT_COLUMNS,
     IMPACT_COLUMNS,
-    OBLIQUE_IMPACT_COLUMNS,
-    SHAKEN_IMPACT_COLUMNS,
     VIBRATING_IMPACT_COLUMNS,
 )
 from vibroimpact.dynamics.motion.ended_run import EndedRun
 from vibroimpact.dynamics.motion.energy import close_ledger, ledger_holds
-from vibroimpact.dynamics.motion.impact_rows import stacked_tables, table_of
+from vibroimpact.dynamics.motion.impact_rows import further_columns, stacked_tables, table_of
 from vibroimpact.dynamics.motion.progress import of_several
 from vibroimpact.dynamics.motion.rest import Rest
 from vibroimpact.dynamics.motion.run_rules import OUTCOME_CODES
@@ -122,18 +119,10 @@ def _is_sensitive(problem: Problem) -> bool:
 
 def _columns_of(problem: Problem) -> list[str]:
     """Return the columns of the table of impacts."""
-    columns = [
+    known = [
         name for name in VIBRATING_IMPACT_COLUMNS if name != "sensitivity" or _is_sensitive(problem)
     ]
-    if problem.motion is not None:
-        columns += SHAKEN_IMPACT_COLUMNS
-    if problem.oblique is not None:
-        columns += OBLIQUE_IMPACT_COLUMNS
-        if problem.motion is not None:
-            columns += CARRIED_IMPACT_COLUMNS
-    if problem.fluid is not None:
-        columns.append(f"{problem.fluid.key}_lost_J")
-    return columns
+    return known + further_columns(problem)
 
 
 def _table_of(drop: FollowedDrop) -> dict[str, Floats]:

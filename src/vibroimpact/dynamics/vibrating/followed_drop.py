@@ -27,11 +27,10 @@ from vibroimpact.dynamics.core.vibrating_records import (
 )
 from vibroimpact.dynamics.motion.flight import Flight
 from vibroimpact.dynamics.motion.progress import fraction_done
-from vibroimpact.dynamics.motion.run_rules import start_of
+from vibroimpact.dynamics.motion.run_rules import default_rest_speed, start_of
 from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.contact_view import contact_view
 from vibroimpact.dynamics.vibrating.drop_at_start import (
-    default_rest_speed,
     drop_at_start,
     first_law_of,
     manner_of,
@@ -96,7 +95,12 @@ class FollowedDrop:
         self._bases = bases_of(first_law_of(problem).root)
         self._equilibria = Equilibria(system)
         if problem.rest_speed is None:
-            self.drop.state[records.REST_SPEED] = default_rest_speed(problem, self.first_flight())
+            self.drop.state[records.REST_SPEED] = default_rest_speed(
+                first_law_of(problem),
+                self.first_flight(),
+                self.drop.state[[records.MASS]],
+                self.drop.state[[records.GRAVITY]],
+            )[0]
 
     def first_flight(self) -> Flight:
         """Return the flight from the start."""
@@ -157,7 +161,7 @@ class FollowedDrop:
         `speed`: of approach [m/s]. `dent`: the deepest indentation where it falls [m].
         """
         problem = self.problem
-        law = problem.law_at(problem.law_of(impact), np.array([speed])).take(0)
+        law = problem.law_at_touch(problem.law_of(impact), np.array([speed])).take(0)
         assert isinstance(law, CompliantLaw)  # the problem has seen to it
         if not problem.memory_lasts:
             return law

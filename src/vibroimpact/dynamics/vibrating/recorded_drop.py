@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, overload
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core.contact_records import FLIGHT
 from vibroimpact.dynamics.motion.along import Sphere, State
-from vibroimpact.dynamics.motion.bounce import Bounce
+from vibroimpact.dynamics.motion.bounce import Bounce, MadeBounces
 from vibroimpact.dynamics.motion.contact import Contact
 from vibroimpact.dynamics.motion.flight import Flight
 from vibroimpact.dynamics.statement.problem import Problem
@@ -39,7 +39,7 @@ class Flown(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class RecordedDrop(Sequence[VibratingBounce]):
+class RecordedDrop(MadeBounces[VibratingBounce]):
     """The flights and impacts of one drop.
 
     Parameters
@@ -64,17 +64,6 @@ class RecordedDrop(Sequence[VibratingBounce]):
 
     def __len__(self) -> int:
         return int(np.count_nonzero(self.recorded.parts.kind == FLIGHT))
-
-    @overload
-    def __getitem__(self, index: int) -> VibratingBounce: ...
-
-    @overload
-    def __getitem__(self, index: slice) -> list[VibratingBounce]: ...
-
-    def __getitem__(self, index: int | slice) -> VibratingBounce | list[VibratingBounce]:
-        if isinstance(index, slice):
-            return [self._bounce(number) for number in range(*index.indices(len(self)))]
-        return self._bounce(range(len(self))[index])
 
     def _bounce(self, number: int) -> VibratingBounce:
         flight, motion = self.flight(number)

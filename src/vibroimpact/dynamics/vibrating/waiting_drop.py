@@ -11,7 +11,6 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.bodies.ball import mean_density
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.core import drop_records as records
@@ -171,18 +170,6 @@ class WaitingDrop(FollowedDrop):
 
     # contact
     # -------------------------------------------------------------------------------------
-
-    def law_of(self, impact: int, speed: float, dent: float) -> CompliantLaw:
-        """Return the law of an impact; its restitution is what a liquid leaves of it."""
-        law = super().law_of(impact, speed, dent)
-        problem = self.problem
-        if problem.liquid is None:
-            return law
-        radius = np.array([float(problem.sphere.contact_offset)])
-        density = mean_density(np.array([float(problem.sphere.mass)]), radius)
-        around = problem.liquid.around(law, np.array([speed]), radius, density)
-        assert isinstance(around, CompliantLaw)
-        return around.take(0)
 
     def _next_law(self, speed: float) -> CompliantLaw:
         """Return the law of the next impact at an approach speed [m/s]."""
