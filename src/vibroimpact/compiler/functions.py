@@ -29,7 +29,7 @@ from vibroimpact.compiler.symbols import call_by_symbol, is_large
 _OPTIONS = {"error_model": "numpy"}
 """Division by zero gives infinity; without `fastmath` sums do not depend on the compiler."""
 
-_SECONDS = 6e-4
+_SECONDS = 4e-4
 """Time to compile a byte of Python's code [s]."""
 
 _REPLACED: dict[Any, Callable[..., Any]] = {}

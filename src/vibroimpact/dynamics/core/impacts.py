@@ -261,9 +261,13 @@ def begin_contact(
     return law, begun
 
 
-@compiled(lambda t: t.of(Progress)(t.of(Progress), t.real, t.integer, t.of(SlidingSphere)))
-def with_law(progress: Progress, time: float, law: int, sphere: SlidingSphere) -> Progress:
-    """Return how far an impact has come, at another time [s], with another law and friction."""
+@compiled(lambda t: t.of(Progress)(t.of(Progress), t.real, t.integer, t.real, t.of(SlidingSphere)))
+def with_law(
+    progress: Progress, time: float, law: int, plastic: float, sphere: SlidingSphere
+) -> Progress:
+    """Return how far an impact has come at another time [s], with another law, plastic work [J] and
+    friction.
+    """
     return Progress(
         time,
         progress.next_length,
@@ -275,7 +279,7 @@ def with_law(progress: Progress, time: float, law: int, sphere: SlidingSphere) -
         progress.pushes,
         progress.steps,
         law,
-        progress.plastic,
+        plastic,
         progress.largest_force,
         progress.deepest,
         progress.peaks,
@@ -391,7 +395,7 @@ def touch_again(
         coefficients,
         now.manner.span,
         state,
-        with_law(progress, begun, number, sphere),
+        with_law(progress, begun, number, progress.plastic, sphere),
         parts,
     )
     of_contact = Manner(
@@ -485,7 +489,7 @@ def settled(
         origin = progress.law if manner.lasts else OF_IMPACT
         law = law_at_touch(manner.addresses, drop.coefficients.copy(), manner.series, now.law.speed)
         number = write_law(parts, origin, np.nan, law)
-        progress = with_law(progress, progress.time, number, progress.sphere)
+        progress = with_law(progress, progress.time, number, progress.plastic, progress.sphere)
     return Now(END_BY_REST_SPEED, now.state, now.begun, law, now.manner, progress, now.contacts)
 
 
@@ -501,10 +505,10 @@ def stayed(manner: ImpactManner, drop: VibratingDrop, parts: Parts, now: Now, ou
     progress = now.progress
     delta = progress.delta
     if delta > law.memory_level:
-        done = progress.plastic + plastic_work(law, delta)
+        plastic = progress.plastic + plastic_work(law, delta)
         law = law_after(law, delta)
         number = write_law(parts, progress.law, delta, law)
-        progress = with_plastic(with_law(progress, progress.time, number, progress.sphere), done)
+        progress = with_law(progress, progress.time, number, plastic, progress.sphere)
     phase = END_FAILED
     if outcome == CAPTURED:
         _, release, _, _, _ = levels_at(manner.addresses[2])(law.coefficients)
@@ -514,28 +518,6 @@ def stayed(manner: ImpactManner, drop: VibratingDrop, parts: Parts, now: Now, ou
         if drop.state[TIME] + progress.time >= manner.run_end:
             phase = END_BY_DURATION
     return Now(phase, now.state, now.begun, law, now.manner, progress, now.contacts)
-
-
-@compiled(lambda t: t.of(Progress)(t.of(Progress), t.real))
-def with_plastic(progress: Progress, plastic: float) -> Progress:
-    """Return how far an impact has come, with another plastic work [J]."""
-    return Progress(
-        progress.time,
-        progress.next_length,
-        progress.delta,
-        progress.force,
-        progress.trend,
-        progress.closing,
-        progress.fresh,
-        progress.pushes,
-        progress.steps,
-        progress.law,
-        plastic,
-        progress.largest_force,
-        progress.deepest,
-        progress.peaks,
-        progress.sphere,
-    )
 
 
 @compiled(lambda t: t.real(t.of(Now)))

@@ -75,7 +75,6 @@ from vibroimpact.dynamics.core.vibrating_records import (
     CONTACTS,
     DRIVE_WORK,
     FIRST_LAW,
-    FLIGHTS,
     HELD,
     IMPACTS,
     IN_CONTACT,
@@ -200,7 +199,6 @@ def write_flight(
     """Write a flight between two states that ends at a time [s], and what it took."""
     start = drop.state[TIME]
     write_free(parts, FLIGHT, start, time - start, before, OF_IMPACT)
-    drop.counts[FLIGHTS] += 1
     gone = lost_in_flight(system, before, after)
     for coordinate in range(len(gone)):
         drop.lost[coordinate] += gone[coordinate]

@@ -66,7 +66,7 @@ class ImpactManner(NamedTuple):
 class VibratingDrop(NamedTuple):
     """A drop whose bodies vibrate, and what is written of it.
 
-    counts (2,): impacts and flights so far. state (18,): the numbers of `drop_records`. lost (n +
+    counts (1,): impacts so far. state (18,): the numbers of `drop_records`. lost (n +
     1,): energy lost so far in each coordinate, and last in massless elements [J]. lost_in_impact (n
     + 1,): in the impact under way, last in its contacts. rows (R, 28): the table of impacts. laws
     (I, K): coefficients of the law of each impact, of which the last one goes on. coefficients
@@ -82,8 +82,8 @@ class VibratingDrop(NamedTuple):
     coefficients: Vector
 
 
-IMPACTS, FLIGHTS = range(2)
-"""Places of `VibratingDrop.counts`."""
+IMPACTS = 0
+"""Place of `VibratingDrop.counts`."""
 
 
 class Now(NamedTuple):

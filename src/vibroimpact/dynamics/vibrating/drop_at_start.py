@@ -90,7 +90,7 @@ def drop_at_start(problem: Problem, system: LinearSystem, held: ExitStack) -> Vi
     laws = np.concatenate([held.enter_context(coefficients_of(law, 1)) for law in laws_of(problem)])
     room = min(problem.impacts or MOST_IMPACTS, _FIRST_ROOM)
     return VibratingDrop(
-        counts=np.zeros(2, dtype=np.int64),
+        counts=np.zeros(1, dtype=np.int64),
         state=_numbers_at_start(problem),
         lost=np.zeros(system.number + 1),
         lost_in_impact=np.zeros(system.number + 1),
