@@ -234,6 +234,62 @@ def test_bounces_under_gravity_are_those_of_the_drop() -> None:
     assert found.energy["closure_relative"] < 1e-9
 
 
+def balls_on_a_floor(*balls: dict[str, Any]) -> vi.SystemResponse:
+    """Return the response of balls side by side, which do not know of each other."""
+    law = vi.laws.HuntCrossley
+    system = vi.System(
+        bodies={
+            "wall": WALL,
+            **{
+                f"ball {number}": vi.MovingBody(
+                    mass=ball["mass"], velocity=(0.0, 0.0, ball["velocity"])
+                )
+                for number, ball in enumerate(balls)
+            },
+        },
+        contacts={
+            f"at {number}": vi.PointContact(
+                above=f"ball {number}",
+                below="wall",
+                law=law(stiffness=ball["stiffness"], restitution=0.7),
+                gap=ball["gap"],
+            )
+            for number, ball in enumerate(balls)
+        },
+        gravity=(0.0, 0.0, -9.81),
+    )
+    return vi.simulate_system(system, duration=0.02)
+
+
+def test_of_two_touches_in_a_stretch_of_another_contact_the_first_counts() -> None:
+    """They were 21 us apart, in a stretch of a millisecond: the second began in an overlap, whose
+    energy came from nothing.
+    """
+    soft = {"mass": 1.0, "stiffness": 2e4, "gap": 0.0, "velocity": -0.2}
+    later = {"mass": 0.1, "stiffness": 1e9, "gap": 1.003e-3, "velocity": 0.0}
+    first = {**later, "gap": 1e-3}
+    together = balls_on_a_floor(soft, later, first)
+    assert together.impacts["contact"].tolist() == ["at 0", "at 2", "at 1"]
+    for row, ball in ((1, first), (2, later)):
+        alone = balls_on_a_floor(ball)
+        for name in ("time_s", "closing_speed_m_s", "impulse_N_s", "max_force_N"):
+            assert together.impacts[name][row] == pytest.approx(alone.impacts[name][0], rel=1e-9)
+    assert together.energy["closure_relative"] < 1e-12
+
+
+def test_a_body_that_falls_elsewhere_does_not_change_a_contact() -> None:
+    """The rounding of its energy, which is 10^10 times that of the contact, was taken for an error
+    of this, so that it was not to be integrated.
+    """
+    small = {"mass": 0.1, "stiffness": 1e9, "gap": 1e-4, "velocity": 0.0}
+    heavy = {"mass": 1e3, "stiffness": 1e9, "gap": 1e3, "velocity": 50.0}
+    beside = balls_on_a_floor(small, heavy)
+    alone = balls_on_a_floor(small)
+    assert len(alone.impacts["time_s"]) >= 2
+    for name in ("time_s", "closing_speed_m_s", "impulse_N_s", "max_force_N"):
+        np.testing.assert_allclose(beside.impacts[name], alone.impacts[name], rtol=1e-9)
+
+
 @pytest.mark.parametrize("same_spot", [True, False])
 def test_a_dent_is_found_again_or_not(same_spot: bool) -> None:
     """As by a ball that drops on a plate."""

@@ -197,12 +197,14 @@ def stretch_path(
             )
             lost[number] += length * basis.integral[nodes - 1, node] * power
 
-    # as differences of squares, so that motion that the contact does not change causes no rounding
-    # error
+    # as differences of squares, so that vibration that the contact hardly changes causes little
+    # rounding error; the energy of rigid motions that no contact moves doesn't change
     gain = 0.0
     rounding = 0.0
     driven = coordinates.driven_shapes.shape[1]
     for coordinate in range(number - driven):
+        if coordinates.rounding[coordinate] == 0.0:
+            continue
         faster = speeds[nodes - 1, coordinate] - velocity[coordinate]
         spring = 0.5 * coordinates.frequency[coordinate] * coordinates.frequency[coordinate]
         gain += 0.5 * faster * (speeds[nodes - 1, coordinate] + velocity[coordinate])

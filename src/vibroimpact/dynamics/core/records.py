@@ -304,7 +304,8 @@ class Coordinates(NamedTuple):
     frequency [rad/s], damping [1/s], load: acceleration by gravity [kg^1/2 m/s^2] (n,).
     rigid_shapes (c, r): approach of the surfaces of the contacts by each rigid motion;
     driven_shapes (c, d): by each driven coordinate. rate [1/s], mobility [m/(N s)] (k,): of the
-    massless elements. rounding (n,): relative rounding error of the energy of each.
+    massless elements. rounding (n,): relative rounding error of the energy of each,
+    zero of rigid motions that no contact moves.
     """
 
     frequency: Vector

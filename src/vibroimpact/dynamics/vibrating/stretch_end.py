@@ -46,9 +46,7 @@ def solve_to_zero(
         First x of `GRID` at which it is positive.
     """
     full_length = stretch.length
-    low = np.array([stretch.time_at(max(near - GRID[1], 0.0))])
-    high = np.array([stretch.time_at(near)])
-    length = float(find_root(along_motion(stretch, value), low, high)[0])
+    length = time_of_zero(stretch, value, near)
     # Newton's method for the length, with the rate of the function by a finite difference
     for _ in range(_MOST_CORRECTIONS):
         solved = ahead.solve(time_map, length)
@@ -65,6 +63,16 @@ def solve_to_zero(
         if not 0.0 < length <= 1.01 * full_length:
             return None
     return ended if solved.event.kind == NO_EVENT else None
+
+
+def time_of_zero(stretch: VibratingStretch, value: Callable[[State], Floats], near: float) -> float:
+    """Return when a function of the state becomes positive in a stretch [s from its start].
+
+    `near`: the first x of `GRID` at which it is positive.
+    """
+    low = np.array([stretch.time_at(max(near - GRID[1], 0.0))])
+    high = np.array([stretch.time_at(near)])
+    return float(find_root(along_motion(stretch, value), low, high)[0])
 
 
 def length_growth(stretch: VibratingStretch, tolerance: float) -> float:

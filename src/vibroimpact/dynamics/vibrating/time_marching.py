@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from operator import attrgetter
 
 import numpy as np
 
@@ -53,6 +52,7 @@ from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.stretch_end import (
     length_growth,
     solve_to_zero,
+    time_of_zero,
     with_separation_loss,
 )
 from vibroimpact.errors import ComputationError
@@ -526,7 +526,11 @@ class TimeMarching:
             x = first_crossing(event.value(states))
             if x is not None:
                 events.append(replace(event, x=x))
-        return min(events, key=attrgetter("x"), default=None)
+        first = min((event.x for event in events), default=np.inf)
+        together = [event for event in events if event.x == first]  # met between two grid points
+        if len(together) <= 1:
+            return together[0] if together else None
+        return min(together, key=lambda event: time_of_zero(stretch, event.value, event.x))
 
     def may_touch(self, stretch: VibratingStretch) -> list[int]:
         """Return the contacts that are not closed and may touch within a stretch.
