@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import nullcontext
+from functools import cached_property
 from importlib import import_module
 from inspect import signature
 from secrets import randbits
@@ -186,18 +187,21 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
 class LendingFunction(CompiledFunction):
     """A function with one signature to which Python lends some of its arguments."""
 
-    _entry: Any = None
+    @cached_property
+    def _packings(self) -> list[Packing | None]:
+        """How its arguments are packed that are lent to it."""
+        kinds = self._own_signature().args
+        return [Packing(kind.kind) if isinstance(kind, Lent) else None for kind in kinds]
+
+    @cached_property
+    def _entry(self) -> Any:
+        """What Python calls, with the addresses of packed arguments."""
+        self.ready()
+        (result,) = self.overloads.values()
+        return result.entry_point
 
     def __call__(self, *arguments: Any) -> Any:
         """Call it; it is compiled the first time."""
-        if self._entry is None:
-            self.ready()
-            (result,) = self.overloads.values()
-            self._packings = [
-                Packing(kind.kind) if isinstance(kind, Lent) else None
-                for kind in result.signature.args
-            ]
-            self._entry = result.entry_point
         passed = list(arguments)
         kept = []  # as long as the call lasts
         for number, packing in enumerate(self._packings):
@@ -213,12 +217,7 @@ def compiled_function(
 ) -> CompiledFunction:
     """Return a function as Python calls it, compiled at its first call.
 
-    Parameters
-    ----------
-    function : callable
-        The Python function.
-    signature : callable
-        Returns numba's signature from `vibroimpact.compiler.types`.
+    The parameters are those of `CompiledFunction`.
     """
     is_lent_to = any(isinstance(kind, Lent) for kind in signature(types).args)
     return (LendingFunction if is_lent_to else CompiledFunction)(function, signature)

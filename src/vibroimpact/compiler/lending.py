@@ -28,6 +28,25 @@ from numba.core.types.containers import BaseNamedTuple
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import NativeValue, lower_cast, lower_getattr_generic, register_model, unbox
 
+_WORD = 8  # bytes
+_ALIGNED = "0q"  # in a format of `struct`: what follows begins where eight bytes may
+
+_FORMATS = {types.float64: "d", types.int64: "q", types.boolean: "?"}
+"""Formats of numbers in `struct`, by their types."""
+
+_DTYPES = {
+    types.float64: np.dtype(np.float64).num,
+    types.int64: np.dtype(np.int64).num,
+    types.boolean: np.dtype(np.bool_).num,
+    types.complex128: np.dtype(np.complex128).num,
+}
+"""NumPy's numbers of the types of elements."""
+
+# writes what numba keeps of an array to an address
+_describe = ctypes.PYFUNCTYPE(ctypes.c_int, ctypes.py_object, ctypes.c_void_p)(
+    _helperlib.c_helpers["adapt_ndarray"]  # type: ignore[attr-defined]
+)
+
 
 class Lent(types.Type):
     """The type of a named tuple that is lent; `kind`: that of the tuple."""
@@ -223,21 +242,3 @@ def _getter(names: list[str]) -> Callable[[Any], tuple[Any, ...]]:
 def address_of(array: np.ndarray[Any, Any]) -> int:
     """Return the address of the elements of an array."""
     return int(array.__array_interface__["data"][0])
-
-
-_WORD = 8
-_ALIGNED = "0q"
-_FORMATS = {types.float64: "d", types.int64: "q", types.boolean: "?"}
-
-# writes what numba keeps of an array to an address
-_describe = ctypes.PYFUNCTYPE(ctypes.c_int, ctypes.py_object, ctypes.c_void_p)(
-    _helperlib.c_helpers["adapt_ndarray"]  # type: ignore[attr-defined]
-)
-
-
-_DTYPES = {
-    types.float64: np.dtype(np.float64).num,
-    types.int64: np.dtype(np.int64).num,
-    types.boolean: np.dtype(np.bool_).num,
-    types.complex128: np.dtype(np.complex128).num,
-}

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Protocol
-
 import numpy as np
 
 from vibroimpact.arrays import Floats
@@ -12,19 +10,12 @@ from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core import stop_rules
 from vibroimpact.dynamics.core.drop_records import StopRules
+from vibroimpact.dynamics.motion.flight import Flight
 from vibroimpact.dynamics.statement.outcome import Outcome
 from vibroimpact.dynamics.statement.problem import MOST_IMPACTS, Problem
 
 _LEAST_REST_SPEED = 1e-6  # of the first approach speed
 _APART = 4e-15  # of the amplitude of a shaken plate: the rounding error of its place
-
-
-class FirstFlight(Protocol):
-    """Flights of drops, which touch the plate."""
-
-    def touch(self, gap: Floats) -> tuple[Floats, Floats]:
-        """Return times [s] and speeds [m/s] at which their gaps are these [m] (B,)."""
-
 
 OUTCOME_CODES = np.array([Outcome(ending).code for ending in records.ENDINGS])
 """Codes of outcomes by the numbers of endings."""
@@ -59,9 +50,7 @@ def stop_rules_of(problem: Problem) -> StopRules:
     return StopRules(np.array(kinds), np.array(values, dtype=float), np.array(endings))
 
 
-def default_rest_speed(
-    law: ContactLaw, flight: FirstFlight, mass: Floats, gravity: Floats
-) -> Floats:
+def default_rest_speed(law: ContactLaw, flight: Flight, mass: Floats, gravity: Floats) -> Floats:
     """Return the speeds of separation below which drops without a stated one rest [m/s] (B,).
 
     From it a sphere would rise by its static indentation. It is at least 1e-6 of the first approach

@@ -12,10 +12,7 @@ from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core import vibrating_records
 from vibroimpact.dynamics.motion.along import friction_parts
 from vibroimpact.dynamics.motion.bounce import BouncesOfSeveral
-from vibroimpact.dynamics.motion.columns import (
-    IMPACT_COLUMNS,
-    VIBRATING_IMPACT_COLUMNS,
-)
+from vibroimpact.dynamics.motion.columns import IMPACT_COLUMNS, VIBRATING_IMPACT_COLUMNS
 from vibroimpact.dynamics.motion.ended_run import EndedRun
 from vibroimpact.dynamics.motion.energy import close_ledger, ledger_holds
 from vibroimpact.dynamics.motion.impact_rows import further_columns, stacked_tables, table_of
