@@ -16,10 +16,14 @@ from numpy.polynomial import legendre
 from scipy.special import betaincinv
 
 import vibroimpact as vi
-from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition
+from vibroimpact.dynamics.core.system_records import PEAK_FORCE
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
+from vibroimpact.dynamics.vibrating.marched_system import (
+    ContactDefinition,
+    MarchedSystem,
+    march_system,
+)
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
-from vibroimpact.dynamics.vibrating.time_marching import TimeMarching
 from vibroimpact.structures.modal_model import ModalBasis
 
 BLUE, RED, GREY = "#0b4f8a", "#b3400e", "#6b6b6b"
@@ -47,22 +51,16 @@ def plate(modes: int) -> ModalBasis:
     return ModalBasis(frequencies[first], np.full(modes, 0.01), shape, np.zeros((modes, 3)), at)
 
 
-def marched(system: vi.System, duration: float) -> TimeMarching:
+def marched(system: vi.System, duration: float) -> MarchedSystem:
     """Return what `vi.simulate_system` keeps of a run: its stretches and flights, one
     after another.
     """
     linear, start = system.linear()
-    march = TimeMarching(
-        linear,
-        [
-            ContactDefinition(one.law, one.series, not one.same_spot)
-            for one in system.contacts.values()
-        ],
-        start,
-        system.tolerance,
-    )
-    march.run_until(duration)
-    return march
+    definitions = [
+        ContactDefinition(one.law, one.series, not one.same_spot)
+        for one in system.contacts.values()
+    ]
+    return march_system(linear, definitions, start, system.tolerance, duration)
 
 
 def ball_on_plate(modes: int) -> vi.System:
@@ -185,9 +183,9 @@ def draw_root() -> None:
     figure.savefig("how-root.png", dpi=130)
 
 
-def event_after(march: TimeMarching, index: int) -> str:
+def event_after(march: MarchedSystem, index: int) -> str:
     """Return the event that ended a piece of the run of one contact; "" if none did."""
-    piece, follows = march.parts[index], [*march.parts, None][index + 1]
+    piece, follows = march.motions[index], [*march.motions, None][index + 1]
     pushes = follows is not None and isinstance(follows.motion, VibratingStretch)
     if not isinstance(piece.motion, VibratingStretch):
         return ("pushes again" if pushes else "parted") if piece.motion.recoiling else ""
@@ -203,11 +201,11 @@ def event_after(march: TimeMarching, index: int) -> str:
     )
 
 
-def draw_contact(march: TimeMarching) -> None:
+def draw_contact(march: MarchedSystem) -> None:
     """Draw the force of the contact with its stretches, nodes and events."""
     figure, axis = plt.subplots(figsize=(8.2, 3.6), layout="constrained")
     count, last = 0, 0.0
-    for index, piece in enumerate(march.parts):
+    for index, piece in enumerate(march.motions):
         begin, end, event = (
             1e6 * piece.start,
             1e6 * (piece.start + piece.motion.length),
@@ -251,15 +249,15 @@ def draw_contact(march: TimeMarching) -> None:
     figure.savefig("how-contact.png", dpi=130)
 
 
-def draw_ledger(march: TimeMarching) -> None:
+def draw_ledger(march: MarchedSystem) -> None:
     """Draw where the energy is over time."""
     of, times, rows, gone = march.system, [], [], 0.0
     elastic = next(
         piece.motion.contacts[0].local
-        for piece in march.parts
+        for piece in march.motions
         if isinstance(piece.motion, VibratingStretch)
     ).elastic_energy
-    for piece in march.parts:
+    for piece in march.motions:
         since = piece.motion.length * np.linspace(0.0, 1.0, 41)
         state = piece.motion.state(since)
         lost = piece.motion.lost_by(since).sum(axis=1)
@@ -357,8 +355,8 @@ for modes in (5, 50, 500, 5000):
     system = ball_on_plate(modes)
     begun = process_time()
     found = marched(system, 1.5e-4)
-    stretches = sum(isinstance(piece.motion, VibratingStretch) for piece in found.parts)
-    force = max(impact.force.locate()[0] for impact in found.impacts)
+    stretches = sum(isinstance(piece.motion, VibratingStretch) for piece in found.motions)
+    force = found.impacts()[:, PEAK_FORCE].max()
     took, highest = (
         1e3 * (process_time() - begun),
         system.linear()[0].angular_frequency.max() / 2e3 / np.pi,

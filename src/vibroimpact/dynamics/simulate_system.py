@@ -2,24 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from numbers import Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.arrays import Bools, Floats
+from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.core.system_records import (
+    CLOSING,
+    CONTACT,
+    END,
+    IMPULSE,
+    PEAK_DEPTH,
+    PEAK_FORCE,
+    START,
+    TIME_OF_FORCE,
+)
 from vibroimpact.dynamics.motion.energy import CLOSURE_LIMIT
 from vibroimpact.dynamics.status import end_in_words
 from vibroimpact.dynamics.system import System
-from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition
-from vibroimpact.dynamics.vibrating.free_motion import FreePhase
-from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
-from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
-from vibroimpact.dynamics.vibrating.time_marching import TimeMarching
+from vibroimpact.dynamics.vibrating.independent_systems import (
+    IndependentSystems,
+    march_independent,
+)
+from vibroimpact.dynamics.vibrating.linear_system import State
+from vibroimpact.dynamics.vibrating.marched_system import ContactDefinition
 from vibroimpact.errors import ComputationError, InputError
 
 _LONGEST = 1e9  # seconds
@@ -110,7 +120,7 @@ class SystemResponse:
     impacts: dict[str, NDArray[Any]]
     energy: dict[str, float]
     end_time: float
-    _march: TimeMarching
+    _motion: IndependentSystems
 
     def __repr__(self) -> str:
         return f"<SystemResponse: {len(self.impacts['time_s'])} impacts in {self.end_time:g} s>"
@@ -134,8 +144,8 @@ class SystemResponse:
             If a time lies outside the run.
         """
         times = self._times(times)
-        state = self._states(times)
-        return {name: self._motion(name, state, times.shape) for name in self.system.bodies}
+        state = self._motion.states(times.ravel())
+        return {name: self._motion_of(name, state, times.shape) for name in self.system.bodies}
 
     def forces(self, times: Any) -> dict[str, Floats]:
         """Return the forces of the contacts [N] at times since the start [s], by their names.
@@ -143,14 +153,11 @@ class SystemResponse:
         They are positive where they push.
         """
         times = self._times(times)
-        forces = {name: np.zeros(times.shape) for name in self.system.contacts}
-        names = list(forces)
-        for motion, inside, elapsed in self._parts_at(times.ravel()):
-            if isinstance(motion, VibratingStretch):
-                for contact in motion.contacts:
-                    x = contact.rule.unmap_time(elapsed / motion.length)
-                    forces[names[contact.number]].ravel()[inside] = contact.force_at(x)
-        return forces
+        forces = self._motion.forces(times.ravel())
+        return {
+            name: forces[:, row].reshape(times.shape)
+            for row, name in enumerate(self.system.contacts)
+        }
 
     def gaps(self, times: Any) -> dict[str, Floats]:
         """Return the gaps of the contacts [m] at times since the start [s], by their names.
@@ -158,7 +165,7 @@ class SystemResponse:
         They are negative where the surfaces overlap.
         """
         times = self._times(times)
-        approach = self._march.system.approach(self._states(times))
+        approach = self._motion.system.approach(self._motion.states(times.ravel()))
         return {
             name: -approach[:, row].reshape(times.shape)
             for row, name in enumerate(self.system.contacts)
@@ -186,38 +193,7 @@ class SystemResponse:
             )
         return found
 
-    @cached_property
-    def _starts(self) -> Floats:
-        """Starts of the parts of the history [s]."""
-        return np.array([part.start for part in self._march.parts])
-
-    def _parts_at(
-        self, times: Floats
-    ) -> Iterator[tuple[VibratingStretch | FreePhase, Bools, Floats]]:
-        """Yield each motion of the history with a mask of the times within it, and these times.
-
-        The latter are since its start [s].
-        """
-        part_of_time = np.maximum(np.searchsorted(self._starts, times, side="right") - 1, 0)
-        for number in np.unique(part_of_time).tolist():
-            part = self._march.parts[number]
-            inside = part_of_time == number
-            elapsed = np.minimum(times[inside] - part.start, part.motion.length)
-            yield part.motion, inside, elapsed
-
-    def _states(self, times: Floats) -> State:
-        """Return the states at times, along one axis."""
-        times = times.ravel()
-        number = self._march.system.number
-        displacement = np.empty((len(times), number))
-        velocity = np.empty((len(times), number))
-        for motion, inside, elapsed in self._parts_at(times):
-            state = motion.state(elapsed)
-            displacement[inside] = state.displacement
-            velocity[inside] = state.velocity
-        return State(displacement, velocity, np.zeros((len(times), 0)))
-
-    def _motion(self, name: str, state: State, shape: tuple[int, ...]) -> BodyMotion:
+    def _motion_of(self, name: str, state: State, shape: tuple[int, ...]) -> BodyMotion:
         """Return the motion of a body in states along one axis, at times of a shape."""
         rigid, modes = self.system.slices[name]
 
@@ -301,52 +277,49 @@ def simulate_system(
         ContactDefinition(contact.law, contact.series, fresh_surface=not contact.same_spot)
         for contact in system.contacts.values()
     ]
-    march = TimeMarching(linear, definitions, start, system.tolerance)
     # Newton iterates may overflow; results that are not finite are detected and retried
     with np.errstate(all="ignore"):
-        march.run_until(duration, progress)
-    names = list(system.contacts)
-    forces = np.array([impact.force.locate() for impact in march.impacts]).reshape(-1, 2)
+        motion = march_independent(linear, definitions, start, system.tolerance, duration, progress)
+    names = np.array(list(system.contacts))
+    impacts = motion.impacts().T
     columns = {
-        "contact": np.array([names[impact.contact] for impact in march.impacts]),
-        "time_s": np.array([impact.start for impact in march.impacts]),
-        "duration_s": np.array([impact.end - impact.start for impact in march.impacts]),
-        "closing_speed_m_s": np.array([impact.closing_speed for impact in march.impacts]),
-        "max_force_N": forces[:, 0],
-        "time_of_max_force_s": forces[:, 1],
-        "max_indentation_m": np.array([impact.indentation.locate()[0] for impact in march.impacts]),
-        "impulse_N_s": np.array([impact.impulse for impact in march.impacts]),
+        "contact": names[impacts[CONTACT].astype(int)],
+        "time_s": impacts[START],
+        "duration_s": impacts[END] - impacts[START],
+        "closing_speed_m_s": impacts[CLOSING],
+        "max_force_N": impacts[PEAK_FORCE],
+        "time_of_max_force_s": impacts[TIME_OF_FORCE],
+        "max_indentation_m": impacts[PEAK_DEPTH],
+        "impulse_N_s": impacts[IMPULSE],
     }
     # an independent check of the integration
-    energy = _ledger(linear, start, march)
+    energy = _ledger(motion, duration)
     if not energy["closure_relative"] <= CLOSURE_LIMIT:
         raise ComputationError(
             "the energy ledger does not close: "
             f"it is off by {energy['closure_relative']:.2g} of the energy of "
             f"the motion (limit {CLOSURE_LIMIT:g})"
         )
-    return SystemResponse(system, columns, energy, duration, march)
+    return SystemResponse(system, columns, energy, duration, motion)
 
 
-def _ledger(linear: LinearSystem, start: State, march: TimeMarching) -> dict[str, float]:
+def _ledger(motion: IndependentSystems, duration: float) -> dict[str, float]:
     """Return the energy balance at the end of a run [J]."""
-    kinetic_at_start, _ = linear.energies(start)
+    linear = motion.system
+    kinetic_at_start, _ = linear.energies(motion.start)
     input_energy = float(kinetic_at_start.sum())
-    kinetic, strain = (float(energies.sum()) for energies in linear.energies(march.state))
-    potential = -float(march.state.displacement @ linear.load)
-    active = march.active.values()
+    end = motion.end(duration)
+    kinetic, strain = (float(energies.sum()) for energies in linear.energies(end))
+    potential = -float(end.displacement @ linear.load)
+    in_modes, in_contacts = motion.lost(end)
     energy = {
         "kinetic_J": kinetic,
         "potential_J": potential,
         "strain_J": strain,
-        "contact_elastic_J": sum(
-            float(contact.local.energy_at_indentation(contact.law_indentation(linear, march.state)))
-            for contact in active
-        ),
-        "modal_damping_J": float(march.lost[:-1].sum()),
-        "contact_dissipated_J": float(march.lost[-1]),
-        "plastic_work_J": march.plastic
-        + sum(contact.plastic_work(linear, march.state) for contact in active),
+        "contact_elastic_J": motion.stored,
+        "modal_damping_J": in_modes,
+        "contact_dissipated_J": in_contacts,
+        "plastic_work_J": motion.plastic,
     }
     scale = input_energy + max(abs(potential), kinetic)
     closure = abs(sum(energy.values()) - input_energy) / scale if scale else 0.0

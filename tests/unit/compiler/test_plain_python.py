@@ -15,6 +15,7 @@ import pytest
 
 import vibroimpact
 import vibroimpact as vi
+from random_systems import modes_at
 from vibrating import drop_on
 from vibroimpact.compiled import SWITCH, why_not_compiled
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
@@ -67,7 +68,23 @@ def numbers() -> dict[str, dict[str, list[float]]]:
             found[f"{name}, {rolling}, on a plate"] = {
                 column: values.tolist() for column, values in vi.simulate(on_plate).impacts.items()
             }
-    return found
+    return found | {"a system": system_numbers()}
+
+
+def system_numbers() -> dict[str, list[float]]:
+    """Impacts of two balls that meet a plate at nearly the same time, and one another."""
+    shapes = {"low": np.array([1.0, 0.5]), "side": np.array([0.6, -0.7])}
+    plate = vi.MovingBody(mass=np.inf, modes=modes_at(np.array([300.0, 2e3]), 0.01, **shapes))
+    ball = vi.MovingBody(mass=0.05, velocity=(0.0, 0.0, -1.0))
+    contacts = {
+        "low": vi.PointContact(above="first", below="plate", law=LAWS["yielding"], gap=1e-5),
+        "side": vi.PointContact(above="second", below="plate", law=LAWS["recoiling"], gap=2e-5),
+        "top": vi.PointContact(above="third", below="first", law=LAWS["hysteretic"], gap=5e-5),
+    }
+    bodies = {"plate": plate, "first": ball, "second": ball, "third": ball}
+    response = vi.simulate_system(vi.System(bodies=bodies, contacts=contacts), duration=1e-3)
+    impacts = {name: values for name, values in response.impacts.items() if name != "contact"}
+    return {name: values.tolist() for name, values in impacts.items()}
 
 
 def test_plain_python_gives_the_same() -> None:

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from support import one_in
+from vibroimpact.dynamics.core.touch import approach_in, time_apart
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
-from vibroimpact.dynamics.vibrating.next_touch import next_touch, times_apart
+from vibroimpact.dynamics.vibrating.next_touch import next_touch
 
 NONE = np.zeros(0)
 
@@ -194,9 +195,10 @@ def test_surfaces_stay_apart_for_the_time_that_is_stated() -> None:
             damping=rng.choice([0.0, 0.1]),
             local=(1e-4 * rng.random(), 100.0),
         )
-        level = np.array([max(0.0, float(free.system.approach(free.start)[0]))])
-        (apart,) = times_apart(free.system, free.start, level)
-        touch = next_touch(free, float(level[0]), np.inf)
+        level = max(0.0, float(free.system.approach(free.start)[0]))
+        record = free.system.record_of(0)
+        apart = time_apart(approach_in(record, free.start.record), level, record.gravity)
+        touch = next_touch(free, level, np.inf)
         assert apart <= touch * (1.0 + 1e-12)
         shorter += 0.1 * touch < apart < touch < np.inf
     assert shorter > 20

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,11 +12,14 @@ import pytest
 
 import vibroimpact as vi
 from random_systems import HERTZ, free_beam, modes_at, row_of_balls
+from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.contact.laws.thornton import Thornton
 from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.registry import contact_laws
+from vibroimpact.structures.modal_model import ModalBasis
 
 WALL = vi.MovingBody(mass=math.inf)
 BALL = vi.MovingBody(mass=0.1, velocity=(0.0, 0.0, -1.0))
@@ -166,7 +170,7 @@ def test_a_ball_comes_to_rest() -> None:
 
 
 def test_contacts_without_end_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("vibroimpact.dynamics.vibrating.time_marching._MOST_STRETCHES", 50)
+    monkeypatch.setattr("vibroimpact.dynamics.vibrating.marched_system._MOST_STRETCHES", 50)
     with pytest.raises(
         vi.ComputationError,
         match="follow each other ever faster because a body comes to rest, or last long; ask for "
@@ -258,7 +262,7 @@ def balls_on_a_floor(*balls: dict[str, Any]) -> vi.SystemResponse:
         },
         gravity=(0.0, 0.0, -9.81),
     )
-    return vi.simulate_system(system, duration=0.02)
+    return vi.simulate_system(system, duration=0.15)
 
 
 def test_of_two_touches_in_a_stretch_of_another_contact_the_first_counts() -> None:
@@ -432,3 +436,138 @@ def test_the_indentation_does_not_depend_on_which_body_is_called_above() -> None
         system = vi.System(bodies={"plate": plate, "ball": BALL}, contacts={"at": contact})
         found.append(vi.simulate_system(system, duration=3e-3).impacts["max_indentation_m"])
     np.testing.assert_allclose(found[0], found[1], rtol=1e-9)
+
+
+def test_bodies_that_no_contact_joins_do_not_know_of_each_other() -> None:
+    """Balls on a floor, one of which glides past and one of which touches nothing: each as alone."""
+    law = LankaraniNikravesh(stiffness=1e8, restitution=0.6)
+    heights = {"a": 1e-3, "b": 1.3e-3, "c": 4e-3}
+
+    def falling(*names: str) -> vi.SystemResponse:
+        bodies = {
+            name: vi.MovingBody(mass=0.1, velocity=(2.0, 0.0, 0.0), inertia=2e-5) for name in names
+        }
+        contacts = {
+            name: vi.PointContact(above=name, below="floor", law=law, gap=heights[name])
+            for name in names
+        }
+        system = vi.System(
+            bodies={**bodies, "floor": WALL, "idle": BALL},
+            contacts=contacts,
+            gravity=(0.0, 0.0, -9.8),
+        )
+        return vi.simulate_system(system, duration=0.1)
+
+    together = falling(*heights)
+    assert np.all(np.diff(together.impacts["time_s"]) >= 0.0)
+    times = np.linspace(0.0, 0.1, 31)
+    for name in heights:
+        alone = falling(name)
+        of_it = together.impacts["contact"] == name
+        for column, values in alone.impacts.items():
+            np.testing.assert_array_equal(together.impacts[column][of_it], values)
+        np.testing.assert_array_equal(together.forces(times)[name], alone.forces(times)[name])
+        moved, moved_alone = together.at(times), alone.at(times)
+        np.testing.assert_array_equal(moved[name].displacement, moved_alone[name].displacement)
+    assert moved["idle"].velocity[-1, 2] == pytest.approx(-1.0 - 0.98)
+
+
+@pytest.mark.parametrize("parts", [1, 2, 3, 7])
+def test_numbers_do_not_depend_on_the_room_for_parts(
+    monkeypatch: pytest.MonkeyPatch, parts: int
+) -> None:
+    """Laws that remember, and balls on one another, on a plate that vibrates."""
+    names = ("a", "b", "c")
+    shapes = {name: np.array([1.0 - 0.6 * row, 0.4]) for row, name in enumerate(names)}
+    plate = vi.MovingBody(mass=math.inf, modes=modes_at(np.array([80.0, 700.0]), 0.01, **shapes))
+    bodies = {"plate": plate, "top": BALL} | dict.fromkeys(names, BALL)
+    law = Thornton(effective_modulus=7e10, effective_radius=0.01, yield_pressure=1e9)
+    contacts = {
+        name: vi.PointContact(above=name, below="plate", law=law, gap=1e-5 * number)
+        for number, name in enumerate(names)
+    }
+    contacts["top"] = vi.PointContact(above="top", below="b", law=HERTZ, gap=3e-5)
+    system = vi.System(bodies=bodies, contacts=contacts, gravity=(0.0, 0.0, -9.8))
+    expected = vi.simulate_system(system, duration=0.15)
+    assert len(expected.impacts["time_s"]) > 8
+    monkeypatch.setattr("vibroimpact.dynamics.vibrating.marched_system._FIRST_PARTS", parts)
+    response = vi.simulate_system(system, duration=0.15)
+    for name, values in expected.impacts.items():
+        np.testing.assert_array_equal(response.impacts[name], values, err_msg=name)
+    assert response.energy == expected.energy
+    for marched in (bodies.marched for bodies in response._motion.joined):
+        room = marched.parts
+        assert room.written.tolist() == [
+            len(room.start),
+            len(room.contact),
+            len(room.origin),
+            len(room.impacts),
+        ]
+
+
+def test_a_plate_joins_what_falls_on_it() -> None:
+    """Two balls on a plate that vibrates are no longer alone, though they never touch."""
+    shapes = {"a": np.array([1.0, 0.4]), "b": np.array([0.7, -0.8])}
+    plate = vi.MovingBody(mass=math.inf, modes=modes_at(np.array([80.0, 300.0]), 0.01, **shapes))
+    gaps = {"a": 0.0, "b": 1e-4}
+
+    def falling(*names: str) -> vi.SystemResponse:
+        contacts = {
+            name: vi.PointContact(above=name, below="plate", law=HERTZ, gap=gaps[name])
+            for name in names
+        }
+        bodies = dict.fromkeys(names, BALL)
+        return vi.simulate_system(
+            vi.System(
+                bodies={**bodies, "plate": replace(plate, modes=_at(plate.modes, names))},
+                contacts=contacts,
+            ),
+            duration=2e-3,
+        )
+
+    together, alone = falling("a", "b"), falling("a")
+    peak = together.impacts["max_force_N"][together.impacts["contact"] == "a"][0]
+    assert abs(peak / alone.impacts["max_force_N"][0] - 1.0) < 0.2
+    at_end = together.at(2e-3)["a"].velocity[2] - alone.at(2e-3)["a"].velocity[2]
+    assert abs(at_end) > 1e-3
+    assert together.energy["closure_relative"] < 1e-9
+
+
+def _at(modes: ModalBasis, names: tuple[str, ...]) -> ModalBasis:
+    """Return modes seen at some contacts only."""
+    return replace(modes, points={name: modes.points[name] for name in names})
+
+
+def test_all_that_touch_and_close_at_the_start_are_in_contact() -> None:
+    """Also where their touches differ by rounding; balls that do not count would fall through."""
+    random = np.random.default_rng(3)
+    laws = [law for law in contact_laws().values() if issubclass(law, CompliantLaw)]
+    for _ in range(150):
+        number = int(random.integers(2, 7))
+        names = [f"{ball}" for ball in range(number)]
+        shapes = {name: random.normal(size=4) for name in names}
+        frequencies = np.sort(10.0 ** random.uniform(1.5, 4.0, 4))
+        plate = vi.MovingBody(
+            mass=float(random.choice([math.inf, 0.5])), modes=modes_at(frequencies, 0.01, **shapes)
+        )
+        speeds = {name: float(random.uniform(-1.0, 0.2)) for name in names}
+        bodies = {
+            name: vi.MovingBody(mass=float(random.uniform(0.02, 0.2)), velocity=(0.0, 0.0, speed))
+            for name, speed in speeds.items()
+        }
+        contacts = {
+            name: vi.PointContact(
+                above=name, below="plate", law=laws[random.integers(len(laws))].example(PAIR)
+            )
+            for name in names
+        }
+        system = vi.System(
+            bodies={**bodies, "plate": plate},
+            contacts=contacts,
+            gravity=(0.0, 0.0, float(random.choice([0.0, -9.8]))),
+        )
+        if min(speeds.values()) >= 0.0:
+            continue
+        impacts = vi.simulate_system(system, duration=1e-4).impacts
+        begun = set(impacts["contact"][impacts["time_s"] < 1e-12])
+        assert {name for name, speed in speeds.items() if speed < 0.0} <= begun

@@ -14,7 +14,7 @@ from vibrating import STIFFNESS, drop_on, modes_of, random_modes
 from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import contact_laws
-from vibroimpact.dynamics.vibrating import recorded_motion
+from vibroimpact.dynamics.vibrating import recorded_motion, room
 
 PAIR = ContactPair(2.4264724e9, 0.025, 0.09032078879, 8e7, 0.28)
 SOFT_PLATE = {"frequencies": [69.8, 800.0], "contact": [2.5, 2.0], "damping": 0.01}
@@ -48,7 +48,7 @@ def test_parts_are_never_written_beyond_their_room(monkeypatch: pytest.MonkeyPat
     """Also where an impact of several contacts just fills it."""
     law = HuntCrossley(stiffness=STIFFNESS, restitution=0.4)
     rooms = []
-    more = recorded_motion.with_more_room
+    more = room.with_more_room
 
     def noted(parts: recorded_motion.Parts) -> recorded_motion.Parts:
         rooms.append((int(parts.written[0]), len(parts.start)))

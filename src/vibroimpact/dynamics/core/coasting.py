@@ -24,20 +24,25 @@ _MOST_SECANTS = 200
 _TIME_ROUNDING = 1e-13  # of the time of a recoil
 
 
+@compiled(lambda t: t.real(t.of(Law), t.real, t.real))
+def push_at(law: Law, approach: float, rate: float) -> float:
+    """Return the force with which a law would push at an approach of the surfaces [m] and its rate
+    [m/s], negative where they are apart [N].
+    """
+    if approach <= law.release_level:
+        return -1.0
+    delta = law_indentation(law, approach)
+    static, dissipative = force_at(law.addresses[0])(delta, rate, law.speed, law.coefficients)
+    return float(static + dissipative)
+
+
 @compiled(lambda t: t.tuple(t.real, t.real)(t.of(System), t.of(Law), t.of(State)))
 def coasting_values(system: System, law: Law, state: State) -> tuple[float, float]:
     """Return numbers that are positive where a recoiling contact has separated, and where
     its law pushes again.
     """
     approach, _ = approach_of(system, state)
-    pushes = -1.0
-    if approach > law.release_level:
-        delta = law_indentation(law, approach)
-        static, dissipative = force_at(law.addresses[0])(
-            delta, dashpot_rate(system, state), law.speed, law.coefficients
-        )
-        pushes = static + dissipative
-    return law.release_level - approach, pushes
+    return law.release_level - approach, push_at(law, approach, dashpot_rate(system, state))
 
 
 @compiled(lambda t: t.real(t.of(System), t.of(Law), t.of(State), t.real, t.real, t.boolean))

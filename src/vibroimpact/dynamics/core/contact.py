@@ -9,8 +9,6 @@ recoil without a force until they separate or it pushes again.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from vibroimpact.arrays import Floats
@@ -37,7 +35,7 @@ from vibroimpact.dynamics.core.events import (
 )
 from vibroimpact.dynamics.core.flight import approach_of, lost_in_flight, state_after
 from vibroimpact.dynamics.core.law import law_after, law_indentation, stored_energy
-from vibroimpact.dynamics.core.next_stretch import end_of, next_stretch
+from vibroimpact.dynamics.core.next_stretch import end_of, length_growth, next_stretch
 from vibroimpact.dynamics.core.parts import (
     has_room,
     lose_at_end,
@@ -63,8 +61,6 @@ _ZERO_RATE = 1e-9  # of the speed of the motion
 _SHORTEST = 1e-12  # of the duration of a contact
 _LONG = 10.0  # in durations of a contact: a sphere in contact for longer rides
 _NOTHING = 2e-15  # of the energy of the motion: less is a rounding error
-_EASY = 0.01  # target roughness of the next stretch, relative to the root of the tolerance
-_TINY = 1e-300
 
 
 @compiled(lambda t: t.boolean(t.of(System), t.of(Law), t.of(Manner), t.of(State)))
@@ -243,10 +239,7 @@ def follow_contact(
         event = stretch.event
         fresh = False
         if event.kind == NO_EVENT:
-            growth = (_EASY * math.sqrt(manner.tolerance) / max(end.roughness, _TINY)) ** (
-                1.0 / nodes
-            )
-            next_length = end.length * min(max(growth, 0.7), 4.0)
+            next_length = end.length * length_growth(end.roughness, manner.tolerance, nodes)
         elif event.kind == PARTED or (
             event.kind == NO_PUSH and separates_at_no_force(system, law, manner, state)
         ):

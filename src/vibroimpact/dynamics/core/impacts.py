@@ -76,7 +76,7 @@ from vibroimpact.dynamics.core.vibrating_records import (
     VibratingDrop,
 )
 
-_FIRST_LENGTH = 0.125  # of the duration of a contact: length of the first stretch
+FIRST_LENGTH = 0.125  # of the duration of a contact: length of the first stretch
 _LEAST_SPEED = 1e-300
 
 
@@ -243,7 +243,7 @@ def begin_contact(
     number = write_law(parts, progress.law, np.nan, law)
     begun = Progress(
         progress.time,
-        min(progress.next_length, _FIRST_LENGTH * span),
+        min(progress.next_length, FIRST_LENGTH * span),
         indentation_in(system, law, state),
         np.inf,
         0.0,

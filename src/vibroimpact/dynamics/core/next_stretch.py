@@ -4,6 +4,8 @@ first event.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from vibroimpact.compiled import compiled
@@ -17,6 +19,20 @@ from vibroimpact.dynamics.core.contact_records import (
 )
 from vibroimpact.dynamics.core.events import NO_EVENT
 from vibroimpact.dynamics.core.records import Bases, Event, Nodes, State
+
+_EASY = 0.01  # target roughness of the next stretch, relative to the root of the tolerance
+_TINY = 1e-300
+
+
+@compiled(lambda t: t.real(t.real, t.real, t.integer))
+def length_growth(roughness: float, tolerance: float, nodes: int) -> float:
+    """Return the ratio of the lengths of the next stretch and one of some roughness, 0.7 to 4.
+
+    It follows from the convergence of the Legendre coefficients: the last one goes with the length
+    to the power of the number of nodes.
+    """
+    ratio = (_EASY * math.sqrt(tolerance) / max(roughness, _TINY)) ** (1.0 / nodes)
+    return float(min(max(ratio, 0.7), 4.0))
 
 
 @compiled(

@@ -42,13 +42,9 @@ from vibroimpact.dynamics.vibrating.drop_system import centre_of
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.radau_eigenbasis import bases_of
 from vibroimpact.dynamics.vibrating.recorded_drop import RecordedDrop
-from vibroimpact.dynamics.vibrating.recorded_motion import (
-    ImpactOn,
-    RecordedMotion,
-    room_for_parts,
-    with_more_room,
-)
+from vibroimpact.dynamics.vibrating.recorded_motion import ImpactOn, RecordedMotion, room_for_parts
 from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
+from vibroimpact.dynamics.vibrating.room import with_more_room
 from vibroimpact.dynamics.vibrating.sphere_at_rest import Equilibria
 from vibroimpact.dynamics.vibrating.surface_friction import NO_FRICTION
 

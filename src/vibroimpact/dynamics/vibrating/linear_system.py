@@ -57,6 +57,10 @@ class State:
         """The state as the core takes it."""
         return records.State(self.displacement, self.velocity, self.local)
 
+    def part(self, coordinates: Indices) -> State:
+        """Return the state of some of the coordinates."""
+        return State(self.displacement[coordinates], self.velocity[coordinates], self.local)
+
     def take(self, index: int) -> State:
         """Return one state along the leading axis."""
         return State(self.displacement[index], self.velocity[index], self.local[index])
@@ -149,6 +153,24 @@ class LinearSystem(Oscillators):
                 driven=self.driven,
             )
         return self._records[contact]
+
+    def part(self, coordinates: Indices, contacts: Indices) -> LinearSystem:
+        """Return some of the coordinates and contacts as a system of their own.
+
+        There are no massless elements, driven coordinates or friction.
+        """
+        return LinearSystem(
+            angular_frequency=self.angular_frequency[coordinates],
+            damping_ratio=self.damping_ratio[coordinates],
+            shape=self.shape[np.ix_(contacts, coordinates)],
+            offset=self.offset[contacts],
+            load=self.load[coordinates],
+            inside=self.inside[coordinates],
+            below=self.below[np.ix_(contacts, coordinates)],
+            rate=self.rate,
+            mobility=self.mobility,
+            local_contact=self.local_contact,
+        )
 
     def with_sphere(self, shape: float, load: float) -> LinearSystem:
         """Return the same system with a sphere of another mass and weight.
@@ -304,11 +326,6 @@ class LinearSystem(Oscillators):
             + state.displacement @ self.shape[contact]
             + state.local @ self.local_incidence[contact]
         )
-
-    def rate_at(self, state: State, contact: int) -> Floats:
-        """Return the rate of the approach of one contact without contact force [m/s] (...)."""
-        local = (state.local * self.rate) @ self.local_incidence[contact]
-        return np.asarray(state.velocity @ self.shape[contact] - local)
 
     def rates(self, state: State) -> Floats:
         """Return the rate of the approach without contact force [m/s] (..., contacts)."""

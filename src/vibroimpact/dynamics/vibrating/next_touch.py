@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.core import touch
 from vibroimpact.dynamics.core.records import Approach
 from vibroimpact.dynamics.vibrating.fluid_motion import FluidMotion
-from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
+from vibroimpact.dynamics.vibrating.linear_system import FreeMotion
 
 _MOST_STEPS = 100_000
 _MOST_HORIZONS = 10_000
 _SAMPLES = np.linspace(0.0, 1.0, 33)[1:]
 
 
-def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0) -> float:
+def next_touch(motion: FreeMotion, level: float, until: float) -> float:
     """Return when the indentation first rises to a level [s since the start].
 
     It is infinite if that is not before `until`. From an open gap no touch is stepped over.
@@ -29,46 +28,20 @@ def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0)
         Indentation at which the surfaces touch [m].
     until : float
         End of the search [s]; may be infinite.
-    contact : int, default 0
-        Number of the contact in the system.
     """
     if isinstance(motion, FluidMotion):
         return _next_touch_in_fluid(motion, level, until)
-    return float(
-        touch.next_touch(motion.system.record_of(contact), motion.start.record, level, until)
-    )
+    return float(touch.next_touch(motion.system.record_of(0), motion.start.record, level, until))
 
 
-def time_to_separation(motion: FreeMotion, level: float, contact: int = 0) -> float:
+def time_to_separation(motion: FreeMotion, level: float) -> float:
     """Return when surfaces that overlap beyond a level separate to it [s].
 
     It is 0 if they do not overlap, and infinite if they never separate.
     """
     if isinstance(motion, FluidMotion):
         return _time_to_separation_in_fluid(motion, level)
-    return float(
-        touch.time_to_separation(motion.system.record_of(contact), motion.start.record, level)
-    )
-
-
-def times_apart(system: LinearSystem, state: State, levels: Floats) -> Floats:
-    """Return for how long surfaces surely stay apart in free motion [s] (contacts,).
-
-    It is zero where they overlap beyond a level [m] (contacts,). See `core.touch.time_apart`.
-    """
-    vibrating = system.vibrating
-    frequency = system.angular_frequency[vibrating]
-    peak_speed = np.hypot(state.velocity[vibrating], frequency * state.displacement[vibrating])
-    by_modes = peak_speed * frequency * (1.0 + 2.0 * system.damping_ratio[vibrating])
-    by_elements = system.local_incidence @ (np.abs(state.local) * system.rate**2)
-    most = np.abs(system.shape[:, vibrating]) @ by_modes + by_elements + np.abs(system.gravity)
-    gap = np.maximum(levels - system.approach(state), 0.0)
-    opening = -system.rates(state)
-    root = np.sqrt(opening**2 + 2.0 * most * gap)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        until_closed = 2.0 * gap / (root - opening)
-        time = np.where(opening < 0.0, until_closed, (opening + root) / most)
-    return np.where(gap > 0.0, np.nan_to_num(time, nan=np.inf, posinf=np.inf), 0.0)
+    return float(touch.time_to_separation(motion.system.record_of(0), motion.start.record, level))
 
 
 # through a fluid, where the flight is not that of the core

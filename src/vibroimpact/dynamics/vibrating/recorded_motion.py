@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, overload
+from typing import overload
 
 import numpy as np
 
@@ -33,6 +33,7 @@ from vibroimpact.dynamics.vibrating.radau_eigenbasis import (
     RadauEigenbasis,
     radau_eigenbasis,
 )
+from vibroimpact.dynamics.vibrating.room import written_of
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.surface_friction import (
     NO_FRICTION,
@@ -43,7 +44,7 @@ from vibroimpact.dynamics.vibrating.surface_friction import (
 _FIRST_PARTS = 128  # of a motion; the room doubles
 _FIRST_LAWS = 32
 
-_OF_LAWS = ("origin", "closing_speed", "compressed", "coefficients")
+_COUNTED = {LAWS: ("origin", "closing_speed", "compressed", "coefficients")}
 """The arrays of `Parts` with one entry for each law; the others, but for the first, have one for
 each part.
 """
@@ -84,7 +85,7 @@ class RecordedMotion:
 
     def keep_written(self) -> None:
         """Keep what is written of the parts, without the room behind it."""
-        self.parts = _written(self.parts)
+        self.parts = written_of(self.parts, _COUNTED, PARTS)
         self._motions.clear()  # they are read from the room
 
     # laws
@@ -268,22 +269,3 @@ def room_for_parts(system: LinearSystem, coefficients: int) -> Parts:
         compressed=np.empty(laws),
         coefficients=np.empty((laws, coefficients)),
     )
-
-
-def with_more_room(parts: Parts) -> Parts:
-    """Return the parts of a motion with room for twice as many parts and laws."""
-    arrays: dict[str, Any] = {"written": parts.written}
-    for name, values in parts._asdict().items():
-        if name != "written":
-            arrays[name] = np.concatenate([values, np.empty_like(values)])
-    return Parts(**arrays)
-
-
-def _written(parts: Parts) -> Parts:
-    """Return copies of what is written of the parts of a motion, without the room behind it."""
-    arrays: dict[str, Any] = {"written": parts.written.copy()}
-    for name, values in parts._asdict().items():
-        if name != "written":
-            count = parts.written[LAWS if name in _OF_LAWS else PARTS]
-            arrays[name] = values[:count].copy()
-    return Parts(**arrays)

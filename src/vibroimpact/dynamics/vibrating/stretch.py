@@ -12,7 +12,6 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.core.path import stretch_path
-from vibroimpact.dynamics.core.peak import peak_of_force
 from vibroimpact.dynamics.core.records import Path
 from vibroimpact.dynamics.motion.collocation import Rule
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
@@ -128,10 +127,6 @@ class VibratingStretch:
         path = self.path
         return State(path.displacement, path.speed, path.local)
 
-    def time_at(self, x: float) -> float:
-        """Return the time since the start at an x in [0, 1] [s]."""
-        return self.length * float(self.rule.map_time(np.array([x]))[0])
-
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (T,)."""
         start = self.start
@@ -148,28 +143,6 @@ class VibratingStretch:
             start.velocity + t * load + to_time @ forced,
             start.local + to_time @ self.motion.massless.T,
         )
-
-    def peak_force(self, contact: int = 0) -> tuple[float, float]:
-        """Return the x in [0, 1] at which the force of a contact is largest, and that force [N].
-
-        The force is zero where it is tensile and the law cuts tension.
-        """
-        history = self.contacts[contact]
-        x, force = peak_of_force(
-            self.basis.basis, history.local.with_levels, history.delta, history.rate
-        )
-        return x, force if history.local.law.tension == "kept" else max(force, 0.0)
-
-    def indentations(self, contact: int = 0) -> Floats:
-        """Return the indentation of a contact at the start and the nodes [m] (N + 1,).
-
-        It is the approach of the centre above to the surface below.
-        """
-        number = self.contacts[contact].number
-        shape = self.system.indentation_shape[number]
-        at_start = float(self.system.offset[number] + self.start.displacement @ shape)
-        rates = self.velocities @ shape
-        return np.append(at_start, at_start + self.length * (self.rule.integral @ rates))
 
     @cached_property
     def powers(self) -> Floats:
@@ -200,16 +173,6 @@ class VibratingStretch:
     def lost_by(self, time: Floats) -> Floats:
         """Return the energy lost at times since the start [s], (T, n + 1) as in `powers` [J]."""
         return np.asarray(self.length * self.rule.integrate(self._x(time), self.powers))
-
-    @property
-    def trend(self) -> Floats:
-        """Rates of change of the forces at the end [N/s] (c,).
-
-        They are zero after a "release", where the forces are not smooth in time.
-        """
-        if self.rule.time_map == "release":
-            return np.zeros(len(self.contacts))
-        return np.asarray(self.force @ self.rule.end_slope / self.length)
 
     def keep(self) -> None:
         """Keep the motion at the nodes in memory until others of this thread take its place.
