@@ -262,7 +262,7 @@ def balls_on_a_floor(*balls: dict[str, Any]) -> vi.SystemResponse:
         },
         gravity=(0.0, 0.0, -9.81),
     )
-    return vi.simulate_system(system, duration=0.15)
+    return vi.simulate_system(system, duration=0.02)
 
 
 def test_of_two_touches_in_a_stretch_of_another_contact_the_first_counts() -> None:

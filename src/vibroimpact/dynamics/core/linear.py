@@ -22,13 +22,21 @@ def solve_in_place(matrix: Floats, right: Floats) -> None:
     """
     size = len(matrix)
     columns = right.shape[1]
+    # of contacts in a row each is joined to its neighbours alone, and most of the matrix is zero:
+    # a row has nothing from its extent on
+    extent = np.empty(size, np.int64)
+    for row in range(size):
+        extent[row] = size
+        while extent[row] > row + 1 and matrix[row, extent[row] - 1] == 0.0:
+            extent[row] -= 1
     for step in range(size):
         pivot = step
         for row in range(step + 1, size):
             if abs(matrix[row, step]) > abs(matrix[pivot, step]):
                 pivot = row
         if pivot != step:
-            for column in range(step, size):
+            longer = max(extent[step], extent[pivot])
+            for column in range(step, longer):
                 matrix[step, column], matrix[pivot, column] = (
                     matrix[pivot, column],
                     matrix[step, column],
@@ -38,11 +46,13 @@ def solve_in_place(matrix: Floats, right: Floats) -> None:
                     right[pivot, column],
                     right[step, column],
                 )
+            extent[step], extent[pivot] = extent[pivot], extent[step]
         inverse = 1.0 / matrix[step, step]
         for row in range(step + 1, size):
             factor = matrix[row, step] * inverse
             if factor != 0.0:
-                for column in range(step + 1, size):
+                extent[row] = max(extent[row], extent[step])
+                for column in range(step + 1, extent[step]):
                     matrix[row, column] -= factor * matrix[step, column]
                 for column in range(columns):
                     right[row, column] -= factor * right[step, column]
@@ -50,7 +60,7 @@ def solve_in_place(matrix: Floats, right: Floats) -> None:
         inverse = 1.0 / matrix[row, row]
         for column in range(columns):
             value = right[row, column]
-            for later in range(row + 1, size):
+            for later in range(row + 1, extent[row]):
                 value -= matrix[row, later] * right[later, column]
             right[row, column] = value * inverse
 

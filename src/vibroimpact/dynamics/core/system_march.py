@@ -96,6 +96,7 @@ from vibroimpact.dynamics.core.system_records import (
     PUSHING,
     RATE,
     RECOILING,
+    SLACK,
     SPAN,
     STRETCHES,
     TREND,
@@ -297,9 +298,11 @@ def fly(
     if ended >= 0:
         end_recoil(points, march, parts, ended, separates)
     for contact in range(contacts):
-        if touches[contact] <= same_time(march, length):
+        # also where rounding makes another touch a little earlier, so that they overlap already
+        if touches[contact] <= same_time(march, length) or (
+            touches[contact] < math.inf and overlaps_now(points, march, contact, in_dent[contact])
+        ):
             begin_contact(points, march, parts, contact, in_dent[contact])
-    begin_touching(points, march, parts, state, 0.0)
 
 
 @compiled(
@@ -330,6 +333,11 @@ def first_touch(
         apart_until[contact] = 0.0
         if now.approach < level:
             apart_until[contact] = time_apart(now, level, points.gravity[contact])
+        elif 0.0 < now.approach - level <= march.numbers[SLACK] and now.rate > 0.0:
+            # it has touched in the last stretch, by less than was looked for
+            touches[contact] = 0.0
+            apart_until[contact] = math.inf
+            longest = 0.0
     while True:
         soonest = 0
         for contact in range(contacts):
@@ -341,6 +349,18 @@ def first_touch(
         until = same_time(march, longest)
         write_touch(points, march, state, soonest, until, touches, in_dent)
         longest = min(longest, touches[soonest])
+
+
+@compiled(lambda t: t.boolean(t.of(ContactPoints), t.of(SystemMarch), t.integer, t.boolean))
+def overlaps_now(points: ContactPoints, march: SystemMarch, contact: int, in_dent: bool) -> bool:
+    """Do the surfaces of a contact overlap, those of its dent if it is `in_dent`?"""
+    approach, _ = approach_of(
+        system_at(points, contact), state_at(points, contact, state_now(march))
+    )
+    level = march.upcoming.numbers[contact, TOUCH]
+    if in_dent:
+        level = release_of(march.dents, contact)
+    return bool(approach >= level)
 
 
 @compiled(
@@ -674,6 +694,7 @@ def go_through_stretch(
     for index in range(len(group.contacts)):
         deepest = max(deepest, largest_of(tried.contact.delta[index]))
     slack = _TOUCH_SLACK * deepest
+    march.numbers[SLACK] = slack
     other = first_other_event(
         basis, system, points, march, group, state, balance.path.velocity, tried.length, slack
     )
@@ -709,7 +730,6 @@ def go_through_stretch(
             return
         accept(system, points, march, parts, basis_to_event, group, ended, to_event)
         end_at_event(points, march, parts, group.contacts[seen.contact], seen.kind)
-        begin_touching(points, march, parts, state, slack)
         return
     if not balance.resolved:
         march.numbers[NEXT_LENGTH] *= 0.5
@@ -719,7 +739,6 @@ def go_through_stretch(
         march.numbers[NEXT_LENGTH] = tried.length * length_growth(
             tried.contact.roughness, tolerance, len(basis.time)
         )
-        begin_touching(points, march, parts, state, slack)
         return
     success, ended, to_event = up_to_other_event(
         basis, points, march, group, manner, beginning, trend, tried, other, slack
@@ -728,8 +747,7 @@ def go_through_stretch(
         march.numbers[NEXT_LENGTH] = 0.5 * tried.length
         return
     accept(system, points, march, parts, basis, group, ended, to_event)
-    act(points, march, parts, other)
-    begin_touching(points, march, parts, state, slack)
+    act(points, march, parts, state, other, slack)
 
 
 @compiled(
@@ -866,39 +884,37 @@ def end_at_event(
         t.of(ContactPoints),
         t.of(SystemMarch),
         t.of(SystemParts),
+        t.of(State),
         t.of(OtherEvent),
+        t.real,
     )
 )
-def act(points: ContactPoints, march: SystemMarch, parts: SystemParts, event: OtherEvent) -> None:
-    """Let happen what follows an event of a contact that was not part of a stretch."""
-    if event.kind == TOUCHES:
-        begin_contact(points, march, parts, event.contact, False)
-    elif event.kind == TOUCHES_DENT:
-        begin_contact(points, march, parts, event.contact, True)
-    else:
-        end_recoil(points, march, parts, event.contact, event.kind == SEPARATES)
-
-
-@compiled(
-    lambda t: t.void(t.of(ContactPoints), t.of(SystemMarch), t.of(SystemParts), t.of(State), t.real)
-)
-def begin_touching(
-    points: ContactPoints, march: SystemMarch, parts: SystemParts, before: State, slack: float
+def act(
+    points: ContactPoints,
+    march: SystemMarch,
+    parts: SystemParts,
+    start: State,
+    event: OtherEvent,
+    slack: float,
 ) -> None:
-    """Begin an impact at each contact whose surfaces close, and overlap now.
+    """Let happen what follows an event of a contact that was not part of a stretch.
 
-    Those are left out that overlapped by more than a slack [m] in the state `before`, as in the
-    dent of their last impact. So none is missed that touches at the same time as another, within
-    rounding, or that overlapped by less than was looked for.
+    Surfaces touch with all others that then overlap by half a slack [m], and did not at the start.
     """
-    now = state_now(march)
+    if event.kind == TOUCHES_DENT:
+        begin_contact(points, march, parts, event.contact, True)
+        return
+    if event.kind != TOUCHES:
+        end_recoil(points, march, parts, event.contact, event.kind == SEPARATES)
+        return
+    begin_contact(points, march, parts, event.contact, False)
+    state = state_now(march)
     for contact in range(len(march.phase)):
         if march.phase[contact] != APART:
             continue
         of_contact = system_at(points, contact)
         level = march.upcoming.numbers[contact, TOUCH]
-        approach, rate = approach_of(of_contact, state_at(points, contact, now))
-        if approach >= level and rate > 0.0:
-            earlier, _ = approach_of(of_contact, state_at(points, contact, before))
-            if earlier <= level + slack:
-                begin_contact(points, march, parts, contact, False)
+        before, _ = approach_of(of_contact, state_at(points, contact, start))
+        after, _ = approach_of(of_contact, state_at(points, contact, state))
+        if before - level <= slack and after - level > 0.5 * slack:
+            begin_contact(points, march, parts, contact, False)

@@ -65,8 +65,10 @@ rate of change [N/s], and the rate of its approach [m/s]. Speed of its motion [m
 duration [s]; largest force [N] and approach [m] at a node so far.
 """
 
-NOW, NEXT_LENGTH, PLASTIC = range(3)
-"""Numbers of a march: the time [s], the length of the next stretch [s], plastic work so far [J]."""
+NOW, NEXT_LENGTH, PLASTIC, SLACK = range(4)
+"""Numbers of a march: the time [s], the length of the next stretch [s], plastic work so far [J],
+and an overlap that was no touch in the last stretch [m].
+"""
 
 STRETCHES = 0
 """Place of `SystemMarch.counts`: stretches and flights tried so far."""
@@ -75,7 +77,7 @@ STRETCHES = 0
 class SystemMarch(NamedTuple):
     """A system on its way through its contacts, which is changed as it goes.
 
-    counts (1,), numbers (3,): the places above. displacement, velocity (n,): now. lost (n + 1,):
+    counts (1,), numbers (4,): the places above. displacement, velocity (n,): now. lost (n + 1,):
     energy lost in each coordinate, and in the contacts [J]. Of each contact (C,): phase, as above;
     is_fresh: is no stretch of its impact solved yet? impact: the row of that. of_contact (C, 8):
     the numbers above.

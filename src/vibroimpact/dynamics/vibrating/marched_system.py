@@ -364,7 +364,7 @@ def _march_at_start(
     stated = contacts_of(
         [LocalContact(definition.law, definition.series, 1.0) for definition in definitions]
     )
-    numbers = np.zeros(3)
+    numbers = np.zeros(4)
     numbers[NEXT_LENGTH] = np.inf
     return SystemMarch(
         counts=np.zeros(1, dtype=np.int64),
