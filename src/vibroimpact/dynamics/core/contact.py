@@ -15,7 +15,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled, energies_at
 from vibroimpact.dynamics.core.attempt import beginning_of
 from vibroimpact.dynamics.core.coasting import end_of_coasting
-from vibroimpact.dynamics.core.contact_peaks import peaks_with
+from vibroimpact.dynamics.core.contact_peaks import peaks_since
 from vibroimpact.dynamics.core.contact_records import (
     PARTS,
     RECOIL,
@@ -93,6 +93,15 @@ def plastic_work(law: Law, delta: float) -> float:
     """Return the plastic work of a law since its memory last changed [J], at an indentation [m]."""
     _, plastic = energies_at(law.addresses[1])(delta, law.coefficients)
     return float(plastic)
+
+
+@compiled(lambda t: t.tuple(t.of(Law), t.integer)(t.of(Law), t.integer, t.real, t.of(Parts)))
+def law_turned(law: Law, number: int, delta: float, parts: Parts) -> tuple[Law, int]:
+    """Return a law, and its number in `parts`, after the indentation has turned at its largest [m];
+    `number`: that of the law before.
+    """
+    after = law_after(law, delta)
+    return after, write_law(parts, number, delta, after)
 
 
 @compiled(
@@ -206,12 +215,10 @@ def follow_contact(
                 continue
             turned = closing <= _ZERO_RATE * manner.motion_speed and delta > law.memory_level
         if turned:
-            between = (under_law, parts.written[PARTS])
-            peaks = peaks_with(bases, law, peaks, parts, between, (largest_force, deepest))
+            peaks = peaks_since(bases, law, peaks, parts, under_law, largest_force, deepest)
             under_law = parts.written[PARTS]
             plastic += plastic_work(law, delta)
-            law = law_after(law, delta)
-            number = write_law(parts, number, delta, law)
+            law, number = law_turned(law, number, delta, parts)
         if next_length < _SHORTEST * manner.span:
             outcome = TOO_STIFF
             break
@@ -251,12 +258,10 @@ def follow_contact(
         elif event.kind == NO_PUSH:
             pushes = False
         elif event.kind == TURN:
-            between = (under_law, parts.written[PARTS])
-            peaks = peaks_with(bases, law, peaks, parts, between, (largest_force, deepest))
+            peaks = peaks_since(bases, law, peaks, parts, under_law, largest_force, deepest)
             under_law = parts.written[PARTS]
             plastic += plastic_work(law, delta)
-            law = law_after(law, delta)
-            number = write_law(parts, number, delta, law)
+            law, number = law_turned(law, number, delta, parts)
         if pushes:
             if is_captured(system, law, manner, state, delta):
                 outcome = CAPTURED
@@ -264,8 +269,7 @@ def follow_contact(
             if is_near_rest(system, law, state, force):
                 outcome = MAY_REST
                 break
-    between = (under_law, parts.written[PARTS])
-    peaks = peaks_with(bases, law, peaks, parts, between, (largest_force, deepest))
+    peaks = peaks_since(bases, law, peaks, parts, under_law, largest_force, deepest)
     now = Progress(
         time,
         next_length,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.attempt import basis_of, time_at
-from vibroimpact.dynamics.core.contact_records import RECOIL, Parts, Peaks
+from vibroimpact.dynamics.core.contact_records import PARTS, RECOIL, Parts, Peaks
 from vibroimpact.dynamics.core.linear import largest_of
 from vibroimpact.dynamics.core.peak import peak_of, peak_of_force
 from vibroimpact.dynamics.core.records import Bases, Law
@@ -15,23 +15,19 @@ _NEAR = 0.98
 
 @compiled(
     lambda t: t.of(Peaks)(
-        t.of(Bases),
-        t.of(Law),
-        t.of(Peaks),
-        t.of(Parts),
-        t.tuple(t.integer, t.integer),
-        t.tuple(t.real, t.real),
+        t.of(Bases), t.of(Law), t.of(Peaks), t.of(Parts), t.integer, t.real, t.real
     )
 )
-def peaks_with(
+def peaks_since(
     bases: Bases,
     law: Law,
     before: Peaks,
     parts: Parts,
-    between: tuple[int, int],
-    at_nodes: tuple[float, float],
+    first: int,
+    largest_force: float,
+    deepest: float,
 ) -> Peaks:
-    """Return the peaks of an impact with those of some parts of a contact under one law.
+    """Return the peaks of an impact with those of the last parts of a contact under one law.
 
     They are located only in parts whose nodal values come near the largest.
 
@@ -45,17 +41,16 @@ def peaks_with(
         The peaks of the impact without these parts.
     parts : Parts
         The parts of the contact.
-    between : tuple of two ints
-        The first of the parts, and the one after the last.
-    at_nodes : tuple of two floats
+    first : int
+        The first of the parts under the law.
+    largest_force, deepest : float
         Largest force [N] and largest indentation [m] of the contact at a node so far.
     """
-    largest_force, deepest = at_nodes
     force = before.force
     time_of_force = before.time_of_force
     indentation = before.indentation
     time_of_indentation = before.time_of_indentation
-    for part in range(between[0], between[1]):
+    for part in range(first, parts.written[PARTS]):
         if parts.kind[part] == RECOIL:
             continue
         basis = basis_of(bases, parts.time_map[part])

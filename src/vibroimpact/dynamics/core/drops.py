@@ -75,8 +75,8 @@ from vibroimpact.dynamics.core.records import Law
 from vibroimpact.dynamics.core.static import static_indentation
 from vibroimpact.dynamics.core.stop_rules import first_end
 
-_LEAST_REST_SPEED = 1e-6  # of the first approach speed
-_LEAST_MISSING = 1e-6  # of a restitution of one, with which bounces have an end
+LEAST_REST_SPEED = 1e-6  # of the first approach speed
+LEAST_MISSING = 1e-6  # of a restitution of one, with which bounces have an end
 _ENDS_AT_PULL_OFF = ENDS.index("pull-off")
 
 
@@ -153,7 +153,7 @@ def begin(
     That is the speed from which it would rise by its static indentation, and at least 1e-6 of the
     first approach speed.
     """
-    least = _LEAST_REST_SPEED * next_touch(state, 0.0).speed
+    least = LEAST_REST_SPEED * next_touch(state, 0.0).speed
     if has_force:
         remember(addresses, False, fresh, 0.0, coefficients)
         touch, release, _, _, _ = levels_at(addresses[2])(coefficients)
@@ -424,7 +424,7 @@ def end_by_bounces(state: Floats, row: Floats) -> float:
     """
     missing = 1.0 - row[RESTITUTION]
     limit = math.inf
-    if state[GRAVITY] > 0.0 and missing > _LEAST_MISSING:
+    if state[GRAVITY] > 0.0 and missing > LEAST_MISSING:
         first_flight = 2.0 * state[VELOCITY] * state[INERTIA] / state[GRAVITY]
         limit = float(state[TIME] + first_flight / missing)
     state[END_TIME] = limit if limit < math.inf else state[TIME]

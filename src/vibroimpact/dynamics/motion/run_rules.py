@@ -10,11 +10,11 @@ from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core import stop_rules
 from vibroimpact.dynamics.core.drop_records import StopRules
+from vibroimpact.dynamics.core.drops import LEAST_REST_SPEED
 from vibroimpact.dynamics.motion.flight import Flight
 from vibroimpact.dynamics.statement.outcome import Outcome
 from vibroimpact.dynamics.statement.problem import MOST_IMPACTS, Problem
 
-_LEAST_REST_SPEED = 1e-6  # of the first approach speed
 _APART = 4e-15  # of the amplitude of a shaken plate: the rounding error of its place
 
 OUTCOME_CODES = np.array([Outcome(ending).code for ending in records.ENDINGS])
@@ -66,7 +66,7 @@ def default_rest_speed(law: ContactLaw, flight: Flight, mass: Floats, gravity: F
         Of the spheres [kg], and what accelerates them onto the plate [m/s^2].
     """
     _, speed = flight.touch(np.zeros(1))
-    least = _LEAST_REST_SPEED * speed
+    least = LEAST_REST_SPEED * speed
     if not isinstance(law, CompliantLaw):
         return least
     sag = static_indentation(law, mass * gravity) - law.touch_level

@@ -12,6 +12,7 @@ import numpy as np
 
 from vibroimpact.contact.law import InstantaneousLaw
 from vibroimpact.dynamics.core.drop_records import AT_TOUCH
+from vibroimpact.dynamics.core.drops import LEAST_MISSING
 from vibroimpact.dynamics.motion.flight import Flight
 from vibroimpact.dynamics.motion.progress import fraction_done
 from vibroimpact.dynamics.motion.ride import Ride
@@ -28,7 +29,6 @@ from vibroimpact.dynamics.vibrating.next_touch import next_touch
 # in radians of the fastest harmonic motion: first time after a launch at which the gap is evaluated
 _FIRST_TIME = 1e-6
 _GAP = 1e-13  # of the plate's motion: a gap beyond rounding
-_LEAST_MISSING = 1e-6  # of a restitution of one, with which a ride counts as rest
 
 
 class HardDrop:
@@ -297,7 +297,7 @@ class HardDrop:
 
     def _rest(self, row: dict[str, float]) -> None:
         """End the run of a sphere that rides until its end."""
-        is_rest = 1.0 - row["restitution_achieved"] > _LEAST_MISSING and self.gravity != 0.0
+        is_rest = 1.0 - row["restitution_achieved"] > LEAST_MISSING and self.gravity != 0.0
         self.rest_time = self.time if is_rest else np.nan
         self._end_by(Outcome.REST_SPEED, self.time)
 

@@ -15,6 +15,7 @@ import numpy as np
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core.contact_records import FLIGHT
+from vibroimpact.dynamics.core.drops import end_by_bounces
 from vibroimpact.dynamics.core.parts import has_room
 from vibroimpact.dynamics.core.vibrating_drops import follow_vibrating_drop, next_flight
 from vibroimpact.dynamics.core.vibrating_records import (
@@ -47,8 +48,6 @@ from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 from vibroimpact.dynamics.vibrating.room import with_more_room
 from vibroimpact.dynamics.vibrating.sphere_at_rest import Equilibria
 from vibroimpact.dynamics.vibrating.surface_friction import NO_FRICTION
-
-_LEAST_MISSING = 1e-6  # of a restitution of one, with which bounces have an end
 
 
 class FollowedDrop:
@@ -243,28 +242,14 @@ class FollowedDrop:
         numbers = self.drop.state
         numbers[records.REST_TIME] = self.time
         if phase == records.END_BY_REST_SPEED:
-            self._end_by_bounces()
+            row = self.drop.rows[self.impacts - 1]
+            numbers[records.REST_TIME] = end_by_bounces(numbers, row)
         self.lying = self._equilibria.rest_from(local, self.state, stored)
         numbers[records.SAG] = self.lying.equilibrium.sag
         numbers[records.STORED] = self.lying.equilibrium.stored
         numbers[records.WRITTEN_OFF] = self.lying.written_off
         if not self.system.driven:
             self.left = self.lying.excess
-
-    def _end_by_bounces(self) -> None:
-        """End the run when infinitely many bounces with the last restitution would.
-
-        Their flights are a geometric series with the ratio of the last restitution e, whose sum is
-        that of the first, 2 v/g, over 1 - e. It ends now where they would not.
-        """
-        numbers = self.drop.state
-        missing = 1.0 - float(self.drop.rows[self.impacts - 1, records.RESTITUTION])
-        limit = np.inf
-        if missing > _LEAST_MISSING:
-            gravity = float(numbers[records.GRAVITY] / self.problem.flight_inertia)
-            limit = self.time + 2.0 * float(numbers[records.VELOCITY]) / gravity / missing
-        numbers[records.REST_TIME] = limit
-        numbers[records.END_TIME] = limit if np.isfinite(limit) else self.time
 
     def lie_until(self, end: float) -> None:
         """Let a drop at rest oscillate until the end of its run [s]."""
