@@ -15,7 +15,8 @@ CONSTANT = "constant"
 LINEAR = "linear"
 POWER = "power"
 
-_MOST_BISECTIONS = 200
+_TINY = 1e-300  # an absolute error, which must not count
+_ROUNDING = 1e-14  # relative: of a variance
 
 _PASSES = 3
 """Number of fits, each with the slope of the previous one."""
@@ -228,19 +229,12 @@ def _fitted(
 
 
 def _root_of_falling(function: Callable[[float], float], guess: float) -> float:
-    """Return the positive root of a falling function by bisection; 0 if it is not above 0 at 0."""
+    """Return the positive root of a falling function; 0 if it is not above 0 at 0."""
     if function(0.0) <= 0.0:
         return 0.0
-    low = 0.0
     high = guess
     while function(high) > 0.0:
         high *= 2.0
-    for _ in range(_MOST_BISECTIONS):
-        middle = 0.5 * (low + high)
-        if not low < middle < high:
-            break
-        if function(middle) > 0.0:
-            low = middle
-        else:
-            high = middle
-    return high
+    from scipy.optimize import brentq  # takes a while to load
+
+    return float(brentq(function, 0.0, high, xtol=_TINY, rtol=_ROUNDING))
