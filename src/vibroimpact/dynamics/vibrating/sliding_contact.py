@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -43,9 +44,11 @@ class SlidingContact:
         work = np.zeros(len(time))
         turned = np.zeros((3, len(time)))
         turned_way = np.zeros((2, len(time)))
-        for start, stretch in self.stretches:
+        begun = np.searchsorted(self._starts, time, side="right") - 1  # the last stretch begun
+        for number in np.unique(begun[begun >= 0]).tolist():
+            start, stretch = self.stretches[number]
             finish = start + stretch.length
-            within = (time >= start) & (time <= finish)
+            within = (begun == number) & (time <= finish)
             if within.any():
                 elapsed = time[within] - start
                 velocity[:, within], displacement[:, within], forces, work[within] = stretch.at(
@@ -54,7 +57,7 @@ class SlidingContact:
                 force[:, within] = forces[:2]
                 turned[:, within], turned_way[:, within] = stretch.turned(elapsed)
             # the sphere flies on from the end of a stretch until the next one
-            later = time > finish
+            later = (begun == number) & (time > finish)
             if later.any():
                 end = stretch.end
                 elapsed = time[later] - start - stretch.length
@@ -64,7 +67,6 @@ class SlidingContact:
                     end.displacement[:, None]
                     + (end.velocity[:, None] + 0.5 * pull * elapsed) * elapsed
                 )
-                force[:, later] = 0.0
                 work[later] = end.work
                 turned[:, later] = end.turned[:, None]
                 turned_way[:, later] = (
@@ -74,6 +76,11 @@ class SlidingContact:
             self.sphere, self.before, time, (velocity, displacement), (turned, turned_way)
         )
         return state, -force, work
+
+    @cached_property
+    def _starts(self) -> Floats:
+        """Starts of the stretches, since first touch [s]."""
+        return np.array([start for start, _ in self.stretches])
 
     @property
     def end(self) -> tuple[State, Floats, Floats]:
