@@ -32,7 +32,7 @@ FITTED = (
 @pytest.mark.slow
 def test_300_impacts_in_a_laboratory(population: Callable[..., int]) -> None:
     held: dict[str, list[bool]] = {name: [] for name in (*FITTED, *FROM_RECORDS)}
-    impacts = population(300, share=75)
+    impacts = population(300, share=100)
     doubted = 0
     for number, (radius, speed, place) in enumerate(drawn(300, seed=17)[:impacts]):
         impact, setup = in_laboratory(radius, speed, place, np.random.default_rng(900 + number))

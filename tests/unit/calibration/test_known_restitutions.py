@@ -36,7 +36,7 @@ def test_the_intervals_hold_or_the_file_is_refused_with_a_remedy(
     """
     errors: list[float] = []
     refused: list[str] = []
-    records = population(RECORDS, share=4)
+    records = population(RECORDS, share=6)
     for seed in range(records):
         record = made(seed, tmp_path)
         try:

@@ -885,6 +885,7 @@ def test_a_random_split_is_optimistic_and_the_grouped_one_is_not(tmp_path: Path)
 
 
 @pytest.mark.slow
+@pytest.mark.whole
 def test_without_tones_the_best_is_near_the_bound_and_the_split_does_not_matter(
     tmp_path: Path,
 ) -> None:

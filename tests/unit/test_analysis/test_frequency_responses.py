@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import csv
 import json
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ import numpy as np
 import pytest
 import tomli_w
 from scipy import signal
+from scipy.stats import binom
 from typer.testing import CliRunner
 
 import vibroimpact as vi
@@ -316,11 +318,13 @@ def test_frequencies_at_any_steps(frequency: np.ndarray) -> None:
     [(0.0, 0.02), (0.01, 0.1)],
     ids=["white noise", "noise that grows with the response"],
 )
-def test_intervals_hold_the_truth(growing: float, invented: float) -> None:
+def test_intervals_hold_the_truth(
+    growing: float, invented: float, population: Callable[..., int]
+) -> None:
     """Of frequencies and damping ratios; all modes are found, and few in many files that
     are not there.
     """
-    draws, held, more = 60, np.zeros(2), 0
+    draws, held, more = population(60, share=4), np.zeros(2), 0
     for seed in range(draws):
         responses, natural, ratios = synthetic(np.arange(50.0, 2400.0), seed, growing)
         found = vi.signals.modes_in_responses(responses, (100.0, 2000.0))
@@ -330,7 +334,9 @@ def test_intervals_hold_the_truth(growing: float, invented: float) -> None:
             assert mode.frequency.value == pytest.approx(truth, rel=2e-3)
             both = ((mode.frequency.interval, truth), (mode.damping_ratio.interval, ratio))
             held += [low <= value <= high for (low, high), value in both]
-    assert (held / (7 * draws) > 0.91).all()
+    # of fewer intervals the part that holds scatters more
+    least = 0.91 if draws == 60 else binom.ppf(1e-3, 7 * draws, 0.95) / (7 * draws)
+    assert (held / (7 * draws) >= least).all()
     assert more <= invented * draws
 
 
