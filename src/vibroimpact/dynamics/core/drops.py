@@ -73,7 +73,7 @@ from vibroimpact.dynamics.core.linear import write_all
 from vibroimpact.dynamics.core.lines import room_of, solve_pair, with_bodies
 from vibroimpact.dynamics.core.records import Law
 from vibroimpact.dynamics.core.static import static_indentation
-from vibroimpact.dynamics.core.stop_rules import first_end
+from vibroimpact.dynamics.core.stop_rules import first_end, is_too_slow
 
 LEAST_REST_SPEED = 1e-6  # of the first approach speed
 LEAST_MISSING = 1e-6  # of a restitution of one, with which bounces have an end
@@ -411,7 +411,7 @@ def lie_still(state: Floats, time: float, stored: float, sag: float, stored_at_r
 @compiled(lambda t: t.boolean(t.vector))
 def is_slow(state: Floats) -> bool:
     """Does a drop separate below the rest speed, or not at all?"""
-    return bool(state[VELOCITY] < state[REST_SPEED] or state[VELOCITY] == 0.0)
+    return is_too_slow(state[VELOCITY], state[REST_SPEED])
 
 
 @compiled(lambda t: t.real(t.vector, t.vector))

@@ -61,6 +61,7 @@ from vibroimpact.dynamics.core.law import law_after, law_at_touch, stored_energy
 from vibroimpact.dynamics.core.parts import write_free, write_law
 from vibroimpact.dynamics.core.records import Bases, Law, State, System
 from vibroimpact.dynamics.core.static import static_indentation
+from vibroimpact.dynamics.core.stop_rules import is_too_slow
 from vibroimpact.dynamics.core.surface_friction import flown
 from vibroimpact.dynamics.core.surface_friction_records import SlidingSphere
 from vibroimpact.dynamics.core.touch import next_touch, time_to_separation
@@ -318,7 +319,7 @@ def next_contact(
     """
     state = now.state
     separation = separation_speed(system, state)
-    is_slow = separation < drop.state[REST_SPEED] and system.gravity > 0.0
+    is_slow = is_too_slow(separation, drop.state[REST_SPEED]) and system.gravity > 0.0
     is_shaken = system.driven > 0
     top = np.inf
     if separation > 0.0 and system.gravity != 0.0 and not (is_slow or is_shaken):
@@ -453,7 +454,7 @@ def follow_impact(
         speed = separation_speed(system, now.state)
         rest_speed = drop.state[REST_SPEED]
         touch, _, _, _, _ = levels_at(manner.addresses[2])(drop.coefficients)
-        is_slow = 0.0 < speed < rest_speed and system.gravity > 0.0
+        is_slow = speed > 0.0 and is_too_slow(speed, rest_speed) and system.gravity > 0.0
         if is_slow and separates_slower_than(system, touch, now.state, rest_speed):
             return settled(system, manner, drop, parts, now, touch)
         time, is_same = next_contact(system, manner, drop, now)

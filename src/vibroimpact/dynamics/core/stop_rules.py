@@ -1,6 +1,7 @@
-"""Rules that end the run of a drop in its flight.
+"""Rules that end the run of a drop in its flight, and the rule by which it is at rest.
 
-How a contact ends, and whether a sphere is at rest then, is decided at its release.
+How a contact ends is decided at its release, and with the rule of rest whether a sphere is at rest
+then.
 
 A rule is a function that returns when it ends a run [s], infinite where it does not. A further one
 is a function of this file, with a number that `end_under` knows.
@@ -15,6 +16,14 @@ from vibroimpact.dynamics.core.drop_records import END_LEFT, FreeFall, StopRules
 
 AT_TIME, AFTER_IMPACTS, BESIDE_PLATE = range(3)
 """Kinds of rules; their values are a time [s], a number of impacts, and none."""
+
+
+@compiled(lambda t: t.boolean(t.real, t.real))
+def is_too_slow(speed: float, rest_speed: float) -> bool:
+    """Does a sphere that separates at a speed [m/s] count as at rest? It does below the rest speed,
+    or if it does not separate.
+    """
+    return speed < rest_speed or speed == 0.0
 
 
 @compiled(lambda t: t.real(t.real, t.of(FreeFall)))

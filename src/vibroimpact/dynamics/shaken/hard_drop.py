@@ -13,6 +13,7 @@ import numpy as np
 from vibroimpact.contact.law import InstantaneousLaw
 from vibroimpact.dynamics.core.drop_records import AT_TOUCH
 from vibroimpact.dynamics.core.drops import LEAST_MISSING
+from vibroimpact.dynamics.core.stop_rules import is_too_slow
 from vibroimpact.dynamics.motion.flight import Flight
 from vibroimpact.dynamics.motion.progress import fraction_done
 from vibroimpact.dynamics.motion.ride import Ride
@@ -241,7 +242,7 @@ class HardDrop:
         assert motion is not None  # that of a plate that is shaken
         touch = self.time
         end = touch
-        is_slow = separation < self.rest_speed or separation == 0.0
+        is_slow = is_too_slow(separation, self.rest_speed)
         if is_slow and self._surface(touch)[2] + self.gravity > 0.0:
             end += self._time_to_launch()
             if self.oblique is not None:
