@@ -1,4 +1,4 @@
-"""The same impacts in vibroimpact, SciPy, numba, LAMMPS and EXUDYN: CPU time and error; prints the
+"""The same impacts in vibroimpact, SciPy, numba, heyoka, LAMMPS and EXUDYN: CPU time and error; prints the
 page of benchmarks.
 
 Programs that are not installed are left out, with a note.
@@ -134,6 +134,37 @@ def by_scipy(
         )
         speed = -run.y[1, -1]
     return radius + speed**2 / (2.0 * gravity)
+
+
+def heyoka_drop(
+    mass: float, radius: float, height: float, stiffness: float, damping: float, tolerance: float
+) -> Callable[[], float]:
+    """Return a function that gives the fifth rebound height [m]: flight in closed form, heyoka's
+    Taylor integration from touch to release, compiled once.
+
+    The force has no Taylor series at touch: it begins and ends just beyond.
+    """
+    import heyoka
+
+    gravity, begun = 9.80665, 1e-14
+    x, v = heyoka.make_vars("x", "v")
+    force = stiffness * x**1.5 + damping * x**0.25 * v
+    apart = heyoka.t_event(x - begun, direction=heyoka.event_direction.negative)
+    motion = heyoka.taylor_adaptive(
+        [(x, v), (v, gravity - force / mass)], [begun, 1.0], t_events=[apart], tol=tolerance
+    )
+
+    def fifth_height() -> float:
+        speed = math.sqrt(2.0 * gravity * (height - radius))
+        for _ in range(IMPACTS):
+            motion.time = 0.0
+            motion.state[:] = begun, speed
+            motion.reset_cooldowns()
+            motion.propagate_until(0.01)
+            speed = -motion.state[1]
+        return radius + speed**2 / (2.0 * gravity)
+
+    return fifth_height
 
 
 def numba_loop() -> Callable[..., float]:
@@ -282,6 +313,10 @@ def one_drop(runs: int, folder: Path) -> list[Row]:
         rows.append(
             Row(f"SciPy, DOP853, rtol {tolerance:.0e}", "", took, off(by_scipy(*drop, tolerance)))
         )
+    for tolerance in (1e-12, 1e-9) if has("heyoka") else ():
+        by_heyoka = heyoka_drop(*drop, tolerance)
+        took = cpu_ms(by_heyoka, runs)
+        rows.append(Row(f"heyoka, Taylor, tol {tolerance:.0e}", "", took, off(by_heyoka())))
     exported = folder / "run"
     vi.simulate(case).save(exported)
     if has("lammps"):
@@ -382,6 +417,7 @@ def main() -> None:
         "numba": "numba",
         "lammps": "LAMMPS",
         "exudyn": "EXUDYN",
+        "heyoka": "heyoka",
     }
     there = [
         f"{shown} {importlib.metadata.version(name)}"
