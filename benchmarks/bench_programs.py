@@ -51,7 +51,7 @@ PAGE = """# Benchmarks
 <!-- made by benchmarks/bench_programs.py -->
 
 Computing time and error of the same impacts in several programs. Times are CPU times of the computation in one session on one core
-of a shared machine, {day}: medians of {runs} runs for vibroimpact, of {fewer} for SciPy, of 3 for the others. From session to session
+of a shared machine, {day}: medians of {runs} runs for vibroimpact and heyoka, of {fewer} for SciPy, of 3 for the others. From session to session
 they have differed by up to a factor of two, so ratios near one say little.
 `python benchmarks/bench_programs.py docs/benchmarks.md` generates this page; programs that are not installed are left out.
 
@@ -69,7 +69,8 @@ fifth rebound height, compared with DOP853 with a relative tolerance of 1e-13.
 
 The time of vibroimpact includes the energy ledger, the located peaks and the table of impacts; those of the others are for the motion
 alone, those of LAMMPS and EXUDYN less the start of the program. The forces in the
-rows of SciPy and EXUDYN are Python functions; compiled ones may be faster.
+rows of SciPy and EXUDYN are Python functions; compiled ones may be faster. heyoka compiles the equation; since the force has no Taylor series at touch,
+its integration begins and ends 1e-14 m beyond.
 
 ## {drops:,} drops, one impact
 
