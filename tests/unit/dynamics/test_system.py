@@ -509,6 +509,22 @@ def test_numbers_do_not_depend_on_the_room_for_parts(
         ]
 
 
+def test_progress_is_told_on_the_way_and_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    system = ball_and_wall(
+        law=LankaraniNikravesh(stiffness=1e6, restitution=0.5), gap=0.1, gravity=(0.0, 0.0, -9.8)
+    )
+    expected = vi.simulate_system(system, duration=1.0)
+    monkeypatch.setattr("vibroimpact.dynamics.vibrating.marched_system._AT_ONCE", 5)
+    told: list[float] = []
+    response = vi.simulate_system(system, duration=1.0, progress=told.append)
+    assert len(told) > 5
+    assert told == sorted(told)
+    assert told[0] < 0.5
+    assert told[-1] == 1.0
+    for name, values in expected.impacts.items():
+        np.testing.assert_array_equal(response.impacts[name], values, err_msg=name)
+
+
 def test_a_plate_joins_what_falls_on_it() -> None:
     """Two balls on a plate that vibrates are no longer alone, though they never touch."""
     shapes = {"a": np.array([1.0, 0.4]), "b": np.array([0.7, -0.8])}

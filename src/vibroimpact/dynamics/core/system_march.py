@@ -109,9 +109,9 @@ from vibroimpact.dynamics.core.system_records import (
 )
 from vibroimpact.dynamics.core.touch import approach_in, next_touch, time_apart, time_to_separation
 
-ENDED, FULL, TOO_STIFF, TOO_MANY = range(4)
+ENDED, FULL, TOO_STIFF, PAUSED = range(4)
 """How a march goes on: it has come to its end; there is no room for a further part; a contact can't
-be integrated; it has tried too many stretches.
+be integrated; it has tried as many stretches as it was to.
 """
 
 _ROUNDING = 1e-14  # of the deepest indentation
@@ -175,8 +175,8 @@ def march_on(
         pushing = contacts_in(march, PUSHING)
         if len(pushing) and has_ended_at_once(points, march, parts, pushing):
             continue
-        if march.counts[STRETCHES] == manner.most_stretches:
-            return TOO_MANY
+        if march.counts[STRETCHES] == manner.pause:
+            return PAUSED
         if not has_room(parts, len(march.phase)):
             return FULL
         march.counts[STRETCHES] += 1

@@ -168,13 +168,13 @@ class SystemParts(NamedTuple):
 class MarchManner(NamedTuple):
     """What stays the same through a march.
 
-    tolerance: relative error allowed at the end of each stretch. until: its end [s].
-    most_stretches: how many stretches and flights are tried.
+    tolerance: relative error allowed at the end of each stretch. until: its end [s]. pause: after
+    how many stretches and flights it pauses.
     """
 
     tolerance: Real
     until: Real
-    most_stretches: Integer
+    pause: Integer
 
 
 class OtherEvent(NamedTuple):

@@ -16,7 +16,7 @@ from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.core.contact_records import OF_IMPACT, STRETCH
 from vibroimpact.dynamics.core.events import ENDS
 from vibroimpact.dynamics.core.records import MAPS, Contacts
-from vibroimpact.dynamics.core.system_march import FULL, TOO_MANY, TOO_STIFF, march_on
+from vibroimpact.dynamics.core.system_march import ENDED, FULL, TOO_STIFF, march_on
 from vibroimpact.dynamics.core.system_records import (
     APART,
     IMPACT_NUMBERS,
@@ -27,6 +27,7 @@ from vibroimpact.dynamics.core.system_records import (
     PARTS,
     PLASTIC,
     ROWS,
+    STRETCHES,
     ContactPoints,
     MarchManner,
     SystemMarch,
@@ -49,6 +50,7 @@ from vibroimpact.errors import ComputationError
 
 _FIRST_PARTS = 128  # of a motion; the room doubles
 _MOST_STRETCHES = 200_000
+_AT_ONCE = 1_000  # stretches, until progress is told and an interrupt is heard
 
 _GROUPS = {
     PARTS: (
@@ -290,25 +292,27 @@ def march_system(
     bases = bases_of(_root_of(definitions))
     points = _contact_points(system, definitions)
     record = system.record_of(0)
-    manner = MarchManner(tolerance, end, _MOST_STRETCHES)
-    while True:
+    stretches = 0
+    outcome = FULL
+    while outcome != ENDED:
+        if outcome == TOO_STIFF:
+            raise ComputationError(
+                f"the contact at {marched.time:g} s can't be integrated to the tolerance"
+            )
+        if stretches == _MOST_STRETCHES:
+            raise ComputationError(
+                f"after {_MOST_STRETCHES} stretches of motion the system is at "
+                f"{marched.time:g} s: contacts are many, as where they "
+                "follow each other ever faster because a body comes to rest, or last "
+                "long; ask for a shorter duration"
+            )
+        manner = MarchManner(tolerance, end, min(stretches + _AT_ONCE, _MOST_STRETCHES))
         outcome = march_on(bases, record, points, marched.march, marched.parts, NO_FRICTION, manner)
         if progress is not None:
             progress(min(marched.time / end, 1.0))
-        if outcome != FULL:
-            break
-        marched.parts = with_more_room(marched.parts)
-    if outcome == TOO_STIFF:
-        raise ComputationError(
-            f"the contact at {marched.time:g} s can't be integrated to the tolerance"
-        )
-    if outcome == TOO_MANY:
-        raise ComputationError(
-            f"after {_MOST_STRETCHES} stretches of motion the system is at "
-            f"{marched.time:g} s: contacts are many, as where they "
-            "follow each other ever faster because a body comes to rest, or last "
-            "long; ask for a shorter duration"
-        )
+        stretches = int(marched.march.counts[STRETCHES])
+        if outcome == FULL:
+            marched.parts = with_more_room(marched.parts)
     marched.parts = written_of(marched.parts, _GROUPS, ROWS)
     return marched
 
