@@ -591,3 +591,34 @@ def test_all_that_touch_and_close_at_the_start_are_in_contact() -> None:
         impacts = vi.simulate_system(system, duration=1e-4).impacts
         begun = set(impacts["contact"][impacts["time_s"] < 1e-12])
         assert {name for name, speed in speeds.items() if speed < 0.0} <= begun
+
+
+def test_a_ball_that_leaves_its_dent_is_let_go_whatever_else_touches() -> None:
+    """The surfaces still overlap where the next impact meets them undeformed."""
+    law = Thornton(effective_modulus=7e10, effective_radius=0.01, yield_pressure=1e8)
+    little = {name: np.array([1e-9]) for name in ("leaving", "touching")}
+    floor = replace(WALL, modes=modes_at(np.array([1e3]), 0.0, **little))
+
+    def response(gap: float | None) -> vi.SystemResponse:
+        contacts = {"leaving": vi.PointContact(above="a", below="floor", law=law, same_spot=False)}
+        if gap is not None:
+            contacts["touching"] = vi.PointContact(above="b", below="floor", law=HERTZ, gap=gap)
+        names = {"leaving"} if gap is None else {"leaving", "touching"}
+        shown = replace(floor, modes=_at(floor.modes, tuple(names)))
+        bodies = {"floor": shown, "a": BALL, "b": BALL}
+        system = vi.System(bodies=bodies, contacts=contacts, gravity=(0.0, 0.0, -9.8))
+        return vi.simulate_system(system, duration=0.1)
+
+    alone = response(None)
+    released = float(alone.impacts["time_s"][0] + alone.impacts["duration_s"][0])
+    dent = -float(alone.gaps(released)["leaving"])
+    assert dent > 1e-6
+    time = released + 0.5 * dent / float(alone.at(released)["a"].velocity[2])
+    beside = response(time + 4.9 * time**2)  # so far it falls until then
+    leaving = beside.impacts["contact"] == "leaving"
+    assert beside.impacts["time_s"][~leaving][0] == pytest.approx(time, rel=1e-9)
+    assert leaving.sum() > 1
+    for name in ("time_s", "max_force_N"):
+        np.testing.assert_allclose(
+            beside.impacts[name][leaving], alone.impacts[name], rtol=1e-7, atol=1e-12
+        )

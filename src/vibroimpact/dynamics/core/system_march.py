@@ -300,7 +300,8 @@ def fly(
     for contact in range(contacts):
         # also where rounding makes another touch a little earlier, so that they overlap already
         if touches[contact] <= same_time(march, length) or (
-            touches[contact] < math.inf and overlaps_now(points, march, contact, in_dent[contact])
+            touches[contact] < math.inf
+            and has_closed(points, march, state, contact, in_dent[contact])
         ):
             begin_contact(points, march, parts, contact, in_dent[contact])
 
@@ -351,16 +352,22 @@ def first_touch(
         longest = min(longest, touches[soonest])
 
 
-@compiled(lambda t: t.boolean(t.of(ContactPoints), t.of(SystemMarch), t.integer, t.boolean))
-def overlaps_now(points: ContactPoints, march: SystemMarch, contact: int, in_dent: bool) -> bool:
-    """Do the surfaces of a contact overlap, those of its dent if it is `in_dent`?"""
-    approach, _ = approach_of(
-        system_at(points, contact), state_at(points, contact, state_now(march))
-    )
+@compiled(
+    lambda t: t.boolean(t.of(ContactPoints), t.of(SystemMarch), t.of(State), t.integer, t.boolean)
+)
+def has_closed(
+    points: ContactPoints, march: SystemMarch, before: State, contact: int, in_dent: bool
+) -> bool:
+    """Do the surfaces of a contact overlap that did not in a state `before`? Those of its dent, if
+    it is `in_dent`.
+    """
+    of_contact = system_at(points, contact)
     level = march.upcoming.numbers[contact, TOUCH]
     if in_dent:
         level = release_of(march.dents, contact)
-    return bool(approach >= level)
+    earlier, _ = approach_of(of_contact, state_at(points, contact, before))
+    now, _ = approach_of(of_contact, state_at(points, contact, state_now(march)))
+    return bool(earlier <= level <= now)
 
 
 @compiled(
