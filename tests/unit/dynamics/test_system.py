@@ -622,3 +622,21 @@ def test_a_ball_that_leaves_its_dent_is_let_go_whatever_else_touches() -> None:
         np.testing.assert_allclose(
             beside.impacts[name][leaving], alone.impacts[name], rtol=1e-7, atol=1e-12
         )
+
+
+def test_what_touches_and_parts_at_the_start_is_not_in_contact() -> None:
+    """Two balls on a floor: the lower one rises from it, and the upper one meets it."""
+    bodies = {
+        "floor": WALL,
+        "low": vi.MovingBody(mass=0.1, velocity=(0.0, 0.0, 0.1)),
+        "high": BALL,
+    }
+    contacts = {
+        "low": vi.PointContact(above="low", below="floor", law=HERTZ),
+        "high": vi.PointContact(above="high", below="low", law=HERTZ),
+    }
+    system = vi.System(bodies=bodies, contacts=contacts, gravity=(0.0, 0.0, -9.8))
+    impacts = vi.simulate_system(system, duration=0.05).impacts
+    assert impacts["contact"][0] == "high"
+    assert impacts["closing_speed_m_s"][0] == pytest.approx(1.1)
+    assert impacts["time_s"][1] > 1e-7

@@ -358,16 +358,16 @@ def first_touch(
 def has_closed(
     points: ContactPoints, march: SystemMarch, before: State, contact: int, in_dent: bool
 ) -> bool:
-    """Do the surfaces of a contact overlap that did not in a state `before`? Those of its dent, if
-    it is `in_dent`.
+    """Do the surfaces of a contact close and overlap that did not in a state `before`? Those of its
+    dent, if it is `in_dent`.
     """
     of_contact = system_at(points, contact)
     level = march.upcoming.numbers[contact, TOUCH]
     if in_dent:
         level = release_of(march.dents, contact)
     earlier, _ = approach_of(of_contact, state_at(points, contact, before))
-    now, _ = approach_of(of_contact, state_at(points, contact, state_now(march)))
-    return bool(earlier <= level <= now)
+    now, rate = approach_of(of_contact, state_at(points, contact, state_now(march)))
+    return bool(earlier <= level <= now and rate > 0.0)
 
 
 @compiled(
