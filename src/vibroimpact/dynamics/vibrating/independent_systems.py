@@ -95,7 +95,7 @@ class IndependentSystems:
         """Return the impacts in the order in which they begin, as in `core.system_records`."""
         impacts = []
         for bodies in self.joined:
-            of_bodies = bodies.marched.impacts()
+            of_bodies = bodies.marched.impacts().copy()
             of_bodies[:, CONTACT] = bodies.contacts[of_bodies[:, CONTACT].astype(int)]
             impacts.append(of_bodies)
         together = np.concatenate(impacts)
