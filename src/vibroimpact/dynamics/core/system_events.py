@@ -15,6 +15,8 @@ from vibroimpact.dynamics.core.attempt import place_at, time_at, weights_at
 from vibroimpact.dynamics.core.coasting import push_at
 from vibroimpact.dynamics.core.flight import state_after
 from vibroimpact.dynamics.core.law import law_of
+from vibroimpact.dynamics.core.line_events import narrowed, secant_of
+from vibroimpact.dynamics.core.line_records import Bracket
 from vibroimpact.dynamics.core.records import TOUCH, Basis, Contacts, Matrix, State, System
 from vibroimpact.dynamics.core.system_points import state_at, system_at
 from vibroimpact.dynamics.core.system_records import (
@@ -108,7 +110,7 @@ def write_motion(
     contact: int,
     motion: Floats,
 ) -> None:
-    """Write the motion of a contact through a stretch of a group into `motion` (2, N + 3).
+    """Write the motion of a contact through a stretch of a group into `motion` (2, N + 4).
 
     Rows: its approach [m], and the rate of it [m/s]. The first three numbers are those of a fall
     with constant acceleration; then follows at the start and the nodes by how much it differs.
@@ -195,28 +197,16 @@ def first_crossing(
         value = event_value(march, kind, contact, slack, approach, rate)
         if not (value > 0.0 and before <= 0.0):
             continue
-        # the secant, with the value of an end that has stayed for two steps halved
-        low = (point - 1) / (points - 1)
-        high = x
-        side = 0
+        bracket = Bracket((point - 1) / (points - 1), x, before, value, 0)
         for _ in range(_MOST_SECANTS):
-            if not high - low > _ROUNDING or value <= 0.0:
+            if not bracket.high - bracket.low > _ROUNDING:
                 break
-            middle = high - (high - low) * value / (value - before)
-            middle = min(max(middle, low + 0.25 * _ROUNDING), high - 0.25 * _ROUNDING)
+            middle = max(secant_of(bracket), bracket.low + 0.25 * _ROUNDING)
+            middle = min(middle, bracket.high - 0.25 * _ROUNDING)
             approach, rate = motion_at(basis, motion, length, middle, weights)
-            at_middle = event_value(march, kind, contact, slack, approach, rate)
-            if at_middle > 0.0:
-                high = middle
-                value = at_middle
-                before *= 0.5 if side > 0 else 1.0
-                side = 1
-            else:
-                low = middle
-                before = at_middle
-                value *= 0.5 if side < 0 else 1.0
-                side = -1
-        return high
+            value = event_value(march, kind, contact, slack, approach, rate)
+            bracket = narrowed(bracket, middle, value)
+        return bracket.high
     return math.inf
 
 

@@ -748,7 +748,7 @@ def go_through_stretch(
         )
         return
     success, ended, to_event = up_to_other_event(
-        basis, points, march, group, manner, beginning, trend, tried, other, slack
+        basis, points, march, group, manner, beginning, trend, tried, balance, other, slack
     )
     if not success:
         march.numbers[NEXT_LENGTH] = 0.5 * tried.length
@@ -767,6 +767,7 @@ def go_through_stretch(
         t.of(Beginning),
         t.vector,
         t.of(Attempt),
+        t.of(Balance),
         t.of(OtherEvent),
         t.real,
     )
@@ -780,6 +781,7 @@ def up_to_other_event(
     beginning: Beginning,
     trend: Floats,
     whole: Attempt,
+    balance: Balance,
     other: OtherEvent,
     slack: float,
 ) -> tuple[bool, Attempt, Balance]:
@@ -787,12 +789,11 @@ def up_to_other_event(
     part of it, the solution, and its balance.
 
     By Newton's method for the length. It fails where a contact of the stretch has an event before.
-    `whole`: the stretch beyond the event. `slack`: an overlap that is no touch [m].
+    `whole`, `balance`: the stretch beyond the event. `slack`: an overlap that is no touch [m].
     """
     no_guess = Nodes(np.zeros(0), np.zeros(0), np.zeros(0))
     state = state_now(march)
     ended = whole
-    balance = balance_of(basis, group.bodies, manner, beginning, whole)
     length = whole.length * time_at(basis, other.x)
     for _ in range(_MOST_CORRECTIONS):
         given = Event(NO_EVENT, 0.0, length, 0)

@@ -33,7 +33,6 @@ from vibroimpact.dynamics.core.system_records import (
     SystemMarch,
     SystemParts,
 )
-from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import contact_view
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
@@ -43,6 +42,7 @@ from vibroimpact.dynamics.vibrating.radau_eigenbasis import (
     bases_of,
     radau_eigenbasis,
 )
+from vibroimpact.dynamics.vibrating.recorded_laws import RecordedLaws
 from vibroimpact.dynamics.vibrating.room import with_more_room, written_of
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.surface_friction import NO_FRICTION
@@ -94,7 +94,7 @@ class MotionPart:
 
 
 @dataclass(eq=False)
-class MarchedSystem:
+class MarchedSystem(RecordedLaws):
     """A system of bodies that has been marched through its contacts up to a time.
 
     Parameters
@@ -112,7 +112,6 @@ class MarchedSystem:
     march: SystemMarch
     parts: SystemParts
     _motions: dict[int, MotionPart] = field(default_factory=dict)
-    _locals: dict[int, LocalContact] = field(default_factory=dict)
 
     @property
     def time(self) -> float:
@@ -154,21 +153,15 @@ class MarchedSystem:
     # laws
     # -------------------------------------------------------------------------
 
-    def local(self, law: int) -> LocalContact:
-        """Return the contact under a law, by its number."""
-        if law not in self._locals:
-            self._locals[law] = self._made_local(law)
-        return self._locals[law]
+    @property
+    def _written(self) -> SystemParts:
+        return self.parts
 
-    def _made_local(self, law: int) -> LocalContact:
-        parts = self.parts
-        origin = int(parts.origin[law])
-        compressed = float(parts.compressed[law])
-        if not np.isnan(compressed):
-            return self.local(origin).after_indentation(compressed)
-        definition = self.definitions[int(parts.of_contact[law])]
-        acting = definition.law if origin == OF_IMPACT else self.local(origin).law
-        return LocalContact(acting, definition.series, float(parts.closing_speed[law]))
+    def _stated_law(self, law: int) -> CompliantLaw:
+        return self.definitions[int(self.parts.of_contact[law])].law
+
+    def _series(self, law: int) -> QuasiStatic:
+        return self.definitions[int(self.parts.of_contact[law])].series
 
     # parts
     # -------------------------------------------------------------------------
@@ -217,23 +210,7 @@ class MarchedSystem:
         parts = self.parts
         rows = self._rows(part)
         basis = radau_eigenbasis(MAPS[parts.time_map[part]], _root_of(self.definitions))
-        histories = tuple(
-            ContactHistory(
-                number=int(parts.contact[row]),
-                local=self.local(int(parts.law[row])),
-                rule=basis.rule,
-                static=parts.static[row],
-                dissipative=parts.force[row] - parts.static[row],
-                approach=parts.approach[row],
-                rate=parts.rate[row],
-                closing=parts.closing[row],
-                delta=parts.delta[row],
-                work=float(parts.work[row]),
-                dissipated=float(parts.dissipated[row]),
-                separation_loss=float(parts.separation_loss[row]),
-            )
-            for row in rows
-        )
+        histories = tuple(self._history(row, int(parts.contact[row]), basis.rule) for row in rows)
         stretch = VibratingStretch(
             view=contact_view(self.system, (history.number for history in histories)),
             basis=basis,

@@ -14,7 +14,6 @@ from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.core.contact_records import (
     FLIGHT,
     LAWS,
-    OF_IMPACT,
     PARTS,
     RECOIL,
     STRETCH,
@@ -23,7 +22,6 @@ from vibroimpact.dynamics.core.contact_records import (
 from vibroimpact.dynamics.core.records import MAPS
 from vibroimpact.dynamics.core.surface_friction_records import NUMBERS, SlidingSphere
 from vibroimpact.dynamics.motion.contact import Piece
-from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import ContactView, contact_view
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
@@ -33,6 +31,7 @@ from vibroimpact.dynamics.vibrating.radau_eigenbasis import (
     RadauEigenbasis,
     radau_eigenbasis,
 )
+from vibroimpact.dynamics.vibrating.recorded_laws import RecordedLaws
 from vibroimpact.dynamics.vibrating.room import written_of
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.surface_friction import (
@@ -63,7 +62,7 @@ class ImpactOn:
 
 
 @dataclass(eq=False)
-class RecordedMotion:
+class RecordedMotion(RecordedLaws):
     """The motion of a drop: flights, and the parts of its impacts.
 
     `system`: the bodies at the start. `parts`: as the core wrote them. `end`: the state at the end
@@ -78,7 +77,6 @@ class RecordedMotion:
     first_parts: list[int] = field(default_factory=list)
     first_laws: list[int] = field(default_factory=list)
     _motions: dict[int, VibratingStretch | FreePhase] = field(default_factory=dict)
-    _locals: dict[int, LocalContact] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return int(self.parts.written[PARTS])
@@ -91,22 +89,19 @@ class RecordedMotion:
     # laws
     # ----------------------------------------------------------------------------------------
 
-    def local(self, law: int) -> LocalContact:
-        """Return the contact under a law, by its number."""
-        if law not in self._locals:
-            self._locals[law] = self._made_local(law)
-        return self._locals[law]
+    @property
+    def _written(self) -> Parts:
+        return self.parts
 
-    def _made_local(self, law: int) -> LocalContact:
-        parts = self.parts
-        origin = int(parts.origin[law])
-        compressed = float(parts.compressed[law])
-        if not np.isnan(compressed):
-            return self.local(origin).after_indentation(compressed)
-        number = int(np.searchsorted(self.first_laws, law, side="right")) - 1
-        impact = self.impacts[number]
-        acting = impact.law() if origin == OF_IMPACT else self.local(origin).law
-        return LocalContact(acting, impact.series, float(parts.closing_speed[law]))
+    def _impact_under(self, law: int) -> ImpactOn:
+        """Return what the impact meets that a law belongs to."""
+        return self.impacts[int(np.searchsorted(self.first_laws, law, side="right")) - 1]
+
+    def _stated_law(self, law: int) -> CompliantLaw:
+        return self._impact_under(law).law()
+
+    def _series(self, law: int) -> QuasiStatic:
+        return self._impact_under(law).series
 
     # parts
     # ---------------------------------------------------------------------------------------
@@ -152,21 +147,7 @@ class RecordedMotion:
         parts = self.parts
         local = self.local(int(parts.law[part]))
         basis = radau_eigenbasis(MAPS[parts.time_map[part]], local.law.root)
-        static = parts.static[part]
-        history = ContactHistory(
-            number=0,
-            local=local,
-            rule=basis.rule,
-            static=static,
-            dissipative=parts.force[part] - static,
-            approach=parts.approach[part],
-            rate=parts.rate[part],
-            closing=parts.closing[part],
-            delta=parts.delta[part],
-            work=float(parts.work[part]),
-            dissipated=float(parts.dissipated[part]),
-            separation_loss=float(parts.separation_loss[part]),
-        )
+        history = self._history(part, 0, basis.rule)
         length = float(parts.length[part])
         stretch = VibratingStretch(
             view=self.view(part),
