@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,12 @@ Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Bools = NDArray[np.bool_]
 Integers = NDArray[np.int64]
+
+# of the dimensions that a compiled function is told; an array without them has one
+Vector: TypeAlias = Annotated[Floats, 1]
+Matrix: TypeAlias = Annotated[Floats, 2]
+Cube: TypeAlias = Annotated[Floats, 3]
+
 Indices = NDArray[np.intp]
 """Indices into other arrays."""
 

@@ -2,17 +2,16 @@
 
 Two decorators mark them. `scalar` marks a function of a contact law: it stays a Python function,
 which NumPy's arrays go through as well, and compiled code may call it. `compiled` marks a function
-of the core, with its types; the module that it stands in is loaded only where drops are computed,
-since loading numba takes some tenths of a second.
+of the core, whose annotations are its types; the module that it stands in is loaded only where
+drops are computed, since loading numba takes some tenths of a second.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from functools import cache
 from importlib.util import find_spec
-from typing import Any, cast
+from typing import Annotated, Any, TypeAlias, TypeVar, cast
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -33,6 +32,8 @@ from vibroimpact.compiler.function_values import (
 from vibroimpact.compiler.marks import Function, scalar, scalar_as
 
 __all__ = [
+    "Address",
+    "Lent",
     "compiled",
     "compressed_at",
     "energies_at",
@@ -55,20 +56,30 @@ SWITCH = "VIBROIMPACT_COMPILE"
 
 _SWITCH_OF_NUMBA = "NUMBA_DISABLE_JIT"
 
+_T = TypeVar("_T")
 
-def compiled(signature: Callable[[Any], Any]) -> Callable[[Function], Function]:
+Lent = Annotated[_T, "lent"]
+"""A named tuple that Python lends to a compiled function, which is handed its address."""
+
+Address: TypeAlias = int
+"""Address of a function of a law, which `force_at` and its like take."""
+
+
+def compiled(function: Function) -> Function:
     """Compile a function of the core, or leave it as it is where there is no compiler.
 
     Parameters
     ----------
-    signature : callable
-        Returns numba's signature from the names of the types, which are in
-        `vibroimpact.compiler.types`. Not called without a compiler.
+    function : callable
+        Its parameters and what it returns are annotated with `float`, `int`, `bool`, `complex`,
+        arrays of `vibroimpact.arrays`, named tuples of these, or tuples; `None` for nothing. Arrays
+        have no gaps.
 
     Examples
     --------
-    >>> @compiled(lambda t: t.real(t.vector))
-    ... def largest(values):
+    >>> from vibroimpact.arrays import Vector
+    >>> @compiled
+    ... def largest(values: Vector) -> float:
     ...     highest = values[0]
     ...     for value in values:
     ...         highest = max(highest, value)
@@ -77,13 +88,9 @@ def compiled(signature: Callable[[Any], Any]) -> Callable[[Function], Function]:
     >>> largest(np.array([1.0, 3.0, 2.0]))
     3.0
     """
-
-    def compile_function(function: Function) -> Function:
-        if _why_switched_off():
-            return function
-        return cast(Function, DeferredFunction(function, signature, why_not_compiled))
-
-    return compile_function
+    if _why_switched_off():
+        return function
+    return cast(Function, DeferredFunction(function, why_not_compiled))
 
 
 def law_function(law_class: type[Any], kind: str = "force") -> Any:
@@ -125,8 +132,9 @@ def law_addresses(law_class: type[Any]) -> Any:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> @compiled(lambda t: t.real(t.integers, t.real, t.vector))
-    ... def static_force(addresses, delta, coefficients):
+    >>> from vibroimpact.arrays import Integers, Vector
+    >>> @compiled
+    ... def static_force(addresses: Integers, delta: float, coefficients: Vector) -> float:
     ...     force = force_at(addresses[0])
     ...     return force(delta, 0.0, 1.0, coefficients)[0]
     >>> law = vi.laws.find_contact_law("hunt-crossley")(stiffness=2.0, restitution=0.5)

@@ -31,8 +31,6 @@ class DeferredFunction:
     ----------
     function : callable
         The Python function.
-    signature : callable
-        Returns numba's signature from `vibroimpact.compiler.types`.
     why_not : callable
         Returns why nothing is compiled, or "".
     """
@@ -40,12 +38,10 @@ class DeferredFunction:
     def __init__(
         self,
         function: Callable[..., Any],
-        signature: Callable[[Any], Any],
         why_not: Callable[[], str],
     ) -> None:
         update_wrapper(self, function)
         self.py_func = function
-        self._signature = signature
         self._why_not = why_not
         DEFERRED.append(self)
 
@@ -55,22 +51,24 @@ class DeferredFunction:
         if self._why_not():
             return self.py_func
         from vibroimpact.compiler.functions import compiled_function
+        from vibroimpact.compiler.types import signature_of
 
-        return compiled_function(self.py_func, self._signature)
+        return compiled_function(self.py_func, signature_of(self.py_func))
 
     @cached_property
     def signature_text(self) -> str:
         """The signature, with all that it says of named tuples."""
         from vibroimpact.compiler import types
 
-        return types.text_of(self._signature(types))
+        return types.text_of(types.signature_of(self.py_func))
 
     @cached_property
     def inner(self) -> Any:
         """The function as compiled code calls it."""
         from vibroimpact.compiler.functions import CompiledFunction
+        from vibroimpact.compiler.types import signature_of
 
-        return CompiledFunction(self.py_func, self._signature, inner=True)
+        return CompiledFunction(self.py_func, signature_of(self.py_func), inner=True)
 
     @property
     # what numba asks for where a function that it compiles calls this one

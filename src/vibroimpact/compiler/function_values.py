@@ -15,7 +15,7 @@ from weakref import WeakValueDictionary
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Cube, Floats, Matrix
 
 LAW_FUNCTIONS = {
     "force": "scalar_forces",
@@ -73,7 +73,7 @@ def friction_at(address: Any) -> Any:
 
 
 def multiply_row(
-    room: Any, values: Any, matrices: Any, matrix: Any, width: Any, columns: Any, product: Any
+    room: Matrix, values: int, matrices: Cube, matrix: int, width: int, columns: int, product: int
 ) -> None:
     """Write the product of a row of an array with a matrix into another row.
 

@@ -15,9 +15,10 @@ from typing import Any
 
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
+from numba.core.typing.templates import Signature
 from numba.extending import overload
 
-from vibroimpact.compiler import function_values, intrinsics, types
+from vibroimpact.compiler import function_values, intrinsics
 from vibroimpact.compiler.code_cache import CodeCache
 from vibroimpact.compiler.code_store import compiling_alone
 from vibroimpact.compiler.digest import Digest, NotDigestible
@@ -26,6 +27,7 @@ from vibroimpact.compiler.marks import DEFERRED, SCALAR
 from vibroimpact.compiler.notice import say_how_long, say_trouble
 from vibroimpact.compiler.numba_ways import BITS, compiling_as
 from vibroimpact.compiler.symbols import call_by_symbol, is_large
+from vibroimpact.compiler.types import text_of
 
 _OPTIONS = {"error_model": "numpy"}
 """Division by zero gives infinity; without `fastmath` sums do not depend on the compiler."""
@@ -47,8 +49,8 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
     ----------
     function : callable
         The Python function.
-    signature : callable
-        Returns numba's signature from `vibroimpact.compiler.types`.
+    types : signature
+        Numba's types of its arguments and of what it returns.
     nogil : bool, default True
         Release the interpreter's lock in calls from Python.
     inner : bool, default False
@@ -63,7 +65,7 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
     def __init__(
         self,
         function: Callable[..., Any],
-        signature: Callable[[Any], Any],
+        types: Signature,
         nogil: bool = True,
         inner: bool = False,
     ) -> None:
@@ -76,7 +78,7 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
             **_OPTIONS,
         }
         super().__init__(function, targetoptions=options)
-        self._signature_of = signature
+        self._types = lent_to(types) if inner else types  # compiled code lends it its tuples
         self._is_inner = inner
         self._is_ready = False
 
@@ -102,7 +104,7 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
 
     def _make_ready(self) -> None:
         with compiling_as(self._own_number()):
-            self.compile(self._own_signature())  # or load
+            self.compile(self._types)  # or load
         self.disable_compile()
         self._is_ready = True
         if self._is_inner and self.is_kept and is_large(self._cache.size):
@@ -116,15 +118,10 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
         """
         return self._cache.number if self.is_kept else randbits(BITS)
 
-    def _own_signature(self) -> Any:
-        """Return its signature: compiled code lends it its tuples."""
-        signature = self._signature_of(types)
-        return lent_to(signature) if self._is_inner else signature
-
     @property
     def signature_text(self) -> str:
         """The signature, with all that it says of named tuples."""
-        return types.text_of(self._own_signature())
+        return text_of(self._types)
 
     @property
     def is_kept(self) -> bool:
@@ -190,8 +187,7 @@ class LendingFunction(CompiledFunction):
     @cached_property
     def _packings(self) -> list[Packing | None]:
         """How its arguments are packed that are lent to it."""
-        kinds = self._own_signature().args
-        return [Packing(kind.kind) if isinstance(kind, Lent) else None for kind in kinds]
+        return [Packing(kind.kind) if isinstance(kind, Lent) else None for kind in self._types.args]
 
     @cached_property
     def _entry(self) -> Any:
@@ -212,15 +208,13 @@ class LendingFunction(CompiledFunction):
         return self._entry(*passed)
 
 
-def compiled_function(
-    function: Callable[..., Any], signature: Callable[[Any], Any]
-) -> CompiledFunction:
+def compiled_function(function: Callable[..., Any], types: Signature) -> CompiledFunction:
     """Return a function as Python calls it, compiled at its first call.
 
     The parameters are those of `CompiledFunction`.
     """
-    is_lent_to = any(isinstance(kind, Lent) for kind in signature(types).args)
-    return (LendingFunction if is_lent_to else CompiledFunction)(function, signature)
+    is_lent_to = any(isinstance(kind, Lent) for kind in types.args)
+    return (LendingFunction if is_lent_to else CompiledFunction)(function, types)
 
 
 def _compiled_named(module: str, name: str, inner: bool) -> Any:

@@ -9,6 +9,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from vibroimpact.compiler import types
+from vibroimpact.compiler.function_values import multiply_row
 
 
 def _function_of_address(kind: Any) -> Any:
@@ -23,7 +24,7 @@ def _function_of_address(kind: Any) -> Any:
             value.c_addr = pointer  # not called where there is the other
             return value._getvalue()
 
-        return kind(types.integer), generate
+        return kind(types.address), generate
 
     return of_address
 
@@ -35,6 +36,8 @@ compressed_of_address = _function_of_address(types.compressed)
 slip_after_of_address = _function_of_address(types.slip_after)
 friction_of_address = _function_of_address(types.friction)
 
+
+_MULTIPLICATION = types.signature_of(multiply_row)
 
 _LANES = 8  # doubles of a vector; a machine with shorter ones takes several
 _SHIFT = 3  # bits by which an integer is shifted to multiply or divide it by this
@@ -58,8 +61,8 @@ def product_of_rows(
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         room, values, matrices, matrix, width, columns, product = arguments
-        rows = context.make_array(types.matrix)(context, builder, room)
-        cube = context.make_array(types.cube)(context, builder, matrices)
+        rows = context.make_array(signature.args[0])(context, builder, room)
+        cube = context.make_array(signature.args[2])(context, builder, matrices)
         factors = _pointer_to_row(builder, rows, values)
         target = _pointer_to_row(builder, rows, product)
         weights = _pointer_to_matrix(builder, cube, matrix)
@@ -88,8 +91,7 @@ def product_of_rows(
             builder.store(total, _pointer_to_vector(builder, target, column), align=8)
         return context.get_dummy_value()
 
-    numbers = (types.integer, types.integer, types.integer, types.integer)
-    return types.void(types.matrix, types.integer, types.cube, *numbers), generate
+    return _MULTIPLICATION, generate
 
 
 def _pointer_to_row(builder: Any, array: Any, row: Any) -> Any:

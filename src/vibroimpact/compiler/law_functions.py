@@ -11,6 +11,7 @@ from typing import Any
 
 from numba import objmode
 
+from vibroimpact.compiler import types
 from vibroimpact.compiler.function_values import interpreted_function
 from vibroimpact.compiler.functions import CompiledFunction
 from vibroimpact.errors import SlowLawWarning
@@ -35,7 +36,8 @@ def compiled_law_function(law_class: type[Any], kind: str) -> CompiledFunction:
         missing = law_class.missing_functions()
         reason = f"it has no {_listed(missing)}" if missing else _why_not_compiled(source, kind)
         if reason:
-            calling = CompiledFunction(_CALLING[kind](source), _signature(kind), nogil=False)
+            function_type = getattr(types, kind)
+            calling = CompiledFunction(_CALLING[kind](source), function_type.signature, nogil=False)
             calling.ready()
             _COMPILED[source] = calling
         _REASONS[source] = reason
@@ -50,13 +52,9 @@ def compiled_law_function(law_class: type[Any], kind: str) -> CompiledFunction:
     return _COMPILED[source]
 
 
-def _signature(kind: str) -> Callable[[Any], Any]:
-    return lambda types: getattr(types, kind).signature
-
-
 def _why_not_compiled(source: Callable[..., Any], kind: str) -> str:
     """Compile a function, or return why numba refuses it."""
-    function = CompiledFunction(source, _signature(kind))
+    function = CompiledFunction(source, getattr(types, kind).signature)
     try:
         function.ready()
     except Exception as error:

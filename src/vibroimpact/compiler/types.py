@@ -1,28 +1,28 @@
-"""The types of compiled functions, by the names that signatures use."""
+"""Numba's types of compiled functions, from their annotations, and of the functions of laws."""
 
 from __future__ import annotations
 
-import sys
-from types import ModuleType
-from typing import Any
+from collections.abc import Callable
+from functools import cache
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
-from numba import types
+import numpy as np
+from numba import from_dtype, types
+from numba.core.typing.templates import Signature
 
 from vibroimpact.compiler.lending import Lent
 
-real = types.float64
-integer = types.int64
-boolean = types.boolean
-vector = types.float64[::1]
-matrix = types.float64[:, ::1]
-cube = types.float64[:, :, ::1]
-address = types.int64
-integers = types.int64[::1]
-booleans = types.boolean[::1]
-void = types.void
-complex = types.complex128
-complexes = types.complex128[::1]
+_SCALARS = {
+    float: types.float64,
+    int: types.int64,
+    bool: types.boolean,
+    complex: types.complex128,
+    type(None): types.void,
+}
 
+real = types.float64
+address = types.int64
+vector = types.float64[::1]
 pair = types.UniTuple(real, 2)
 
 force = types.FunctionType(pair(real, real, real, vector))
@@ -55,31 +55,63 @@ friction = types.FunctionType(real(real, real, vector))
 """Of a friction law: the friction force against the slip, from it, normal force, coefficients."""
 
 
-def tuple(*members: types.Type) -> types.Type:
-    """Return the type of a tuple, from those of its members."""
-    return types.Tuple(members)
+def signature_of(function: Callable[..., Any]) -> Signature:
+    """Return numba's signature of a function, from its annotations.
 
-
-def of(kind: type) -> types.Type:
-    """Return the type of a named tuple.
-
-    Its members are annotated with names of types, as `Vector`, or of other named tuples.
+    Raises
+    ------
+    TypeError
+        If an annotation is missing, or not among those that `vibroimpact.compiled.compiled` takes.
     """
-    module = sys.modules[kind.__module__]
-    members = [
-        _member(annotation.__forward_arg__, module) for annotation in kind.__annotations__.values()
-    ]
+    annotations = get_type_hints(function, include_extras=True)
+    code = function.__code__
+    members = []
+    for name in ["return", *code.co_varnames[: code.co_argcount]]:
+        try:
+            members.append(type_of(annotations[name]))
+        except KeyError:
+            raise TypeError(f"{function.__qualname__}: {name}: it is not annotated") from None
+        except TypeError as error:
+            raise TypeError(f"{function.__qualname__}: {name}: {error}") from None
+    returned, *parameters = members
+    return returned(*parameters)
+
+
+@cache
+def type_of(annotation: Any) -> types.Type:
+    """Return numba's type of an annotation."""
+    if annotation in _SCALARS:
+        return _SCALARS[annotation]
+    if get_origin(annotation) is tuple:
+        return types.Tuple([type_of(member) for member in get_args(annotation)])
+    if get_origin(annotation) is np.ndarray:
+        return _array(annotation, dimensions=1)
+    if get_origin(annotation) is Annotated:
+        described, description = get_args(annotation)
+        if description == "lent":
+            return Lent(type_of(described))
+        return _array(described, dimensions=description)
+    if hasattr(annotation, "_fields"):
+        return _named_tuple(annotation)
+    raise TypeError(f"no type of compiled functions is {annotation}")
+
+
+def _array(annotation: Any, dimensions: int) -> types.Type:
+    """Return the type of an array without gaps; annotation: one of `numpy.typing.NDArray`."""
+    _, data_type = get_args(annotation)
+    (element,) = get_args(data_type)
+    return types.Array(from_dtype(np.dtype(element)), dimensions, "C")
+
+
+def _named_tuple(kind: Any) -> types.Type:
+    annotations = get_type_hints(kind, include_extras=True)
+    members = [type_of(annotations[name]) for name in kind._fields]
     if len(set(members)) == 1:
         return types.NamedUniTuple(members[0], len(members), kind)
     return types.NamedTuple(members, kind)
 
 
-def lent(kind: type) -> types.Type:
-    """Return the type of a named tuple that Python lends to a compiled function."""
-    return Lent(of(kind))
-
-
-def text_of(signature: Any) -> str:
+def text_of(signature: Signature) -> str:
     """Return a text of numba's signature, with all that it says of named tuples."""
     return " ".join([str(signature), *map(_fields, (signature.return_type, *signature.args))])
 
@@ -89,10 +121,3 @@ def _fields(kind: Any) -> str:
     kind = getattr(kind, "kind", kind)  # of one that is lent
     members = [_fields(member) for member in getattr(kind, "types", ())]
     return " ".join([str(getattr(kind, "fields", "")), *members])
-
-
-def _member(name: str, module: ModuleType) -> types.Type:
-    member_type = globals().get(name.lower())
-    if isinstance(member_type, types.Type):
-        return member_type
-    return of(getattr(module, name))

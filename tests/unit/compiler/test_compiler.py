@@ -18,20 +18,21 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ForwardRef
+from typing import Any
 
 import numpy as np
 import pytest
 
 import vibroimpact as vi
 import vibroimpact.dynamics.core
+from vibroimpact.arrays import Vector
 from vibroimpact.compiled import (
     SWITCH,
+    Address,
     compiled,
     force_at,
     law_addresses,
     law_coefficients,
-    law_function,
     why_not_compiled,
 )
 from vibroimpact.compiler import code_store, notice
@@ -58,21 +59,22 @@ import sys
 import numpy as np
 
 from callee import scaled
+from vibroimpact.arrays import Vector
 from vibroimpact.compiled import compiled, scalar
 
 scalar(scaled)
 
 
-@compiled(lambda t: t.real(t.vector))
-def total(values):
+@compiled
+def total(values: Vector) -> float:
     answer = 0.0
     for value in values:
         answer += scaled(value)
     return answer
 
 
-@compiled(lambda t: t.real(t.vector))
-def twice(values):
+@compiled
+def twice(values: Vector) -> float:
     return 2.0 * total(values)
 
 
@@ -87,13 +89,14 @@ import sys
 
 import numpy as np
 
-from vibroimpact.compiled import compiled, force_at, law_addresses, law_coefficients, law_function
+from vibroimpact.arrays import Vector
+from vibroimpact.compiled import Address, compiled, force_at, law_addresses, law_coefficients, law_function
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import find_contact_law
 
 
-@compiled(lambda t: t.real(t.address, t.real, t.vector))
-def static_force(address, delta, coefficients):
+@compiled
+def static_force(address: Address, delta: float, coefficients: Vector) -> float:
     force = force_at(address)
     return force(delta, 0.0, 1.0, coefficients)[0]
 
@@ -154,8 +157,9 @@ def toy(tmp_path: Path) -> Toy:
     return Toy(tmp_path)
 
 
-@compiled(lambda t: t.real(t.integer, t.force, t.vector))
-def work(steps: int, force: Callable[..., Any], coefficients: np.ndarray) -> float:
+@compiled
+def work_of_law(steps: int, address: Address, coefficients: Vector) -> float:
+    force = force_at(address)
     total = 0.0
     for step in range(steps):
         static, dissipative = force(1e-4 * step, 1.0, 2.0, coefficients)
@@ -163,18 +167,13 @@ def work(steps: int, force: Callable[..., Any], coefficients: np.ndarray) -> flo
     return total
 
 
-@compiled(lambda t: t.real(t.integer, t.address, t.vector))
-def work_of_law(steps: int, address: Any, coefficients: np.ndarray) -> float:
-    return work(steps, force_at(address), coefficients)
-
-
 def work_of_arrays(law: vi.laws.ContactLaw) -> float:
     static, dissipative = law.forces(1e-4 * np.arange(10), np.ones(10), 2.0 * np.ones(10))  # type: ignore[attr-defined]
     return float(np.sum(static + dissipative))
 
 
-@compiled(lambda t: t.real(t.vector))
-def largest_of(values: np.ndarray) -> float:
+@compiled
+def largest_of(values: Vector) -> float:
     answer = values[0]
     for value in values:
         answer = max(answer, value)
@@ -191,7 +190,6 @@ def largest_of(values: np.ndarray) -> float:
 )
 def test_a_law_is_called_by_value_and_by_address(law: vi.laws.ContactLaw) -> None:
     expected = pytest.approx(work_of_arrays(law), rel=1e-14)
-    assert work(10, law_function(type(law)), law_coefficients(law)) == expected
     assert work_of_law(10, law_addresses(type(law))[0], law_coefficients(law)) == expected
 
 
@@ -456,17 +454,36 @@ def test_all_functions_of_the_core_can_be_kept() -> None:
 
 @needs_compiler
 def test_the_digest_heeds_signatures_and_members_of_named_tuples() -> None:
-    def digest(members: str, kind: str) -> str:
+    def digest(members: str, returned: type) -> str:
         row = namedtuple("row", members)
-        row.__annotations__ = dict.fromkeys(row._fields, ForwardRef("Real"))
-        callee = DeferredFunction(
-            lambda pair: pair.a, lambda t: getattr(t, kind)(t.of(row)), lambda: ""
-        )
+        row.__annotations__ = dict.fromkeys(row._fields, float)
+
+        def first(pair):  # type: ignore[no-untyped-def]
+            return pair.a
+
+        first.__annotations__ = {"pair": row, "return": returned}
+        callee = DeferredFunction(first, lambda: "")
         assert callee.compiled.py_func is callee.py_func
         return Digest(callee, {}).text
 
-    assert digest("a b", "real") == digest("a b", "real")
-    assert len({digest("a b", "real"), digest("b a", "real"), digest("a b", "integer")}) == 3
+    assert digest("a b", float) == digest("a b", float)
+    assert len({digest("a b", float), digest("b a", float), digest("a b", int)}) == 3
+
+
+@needs_compiler
+def test_an_annotation_that_names_no_type_is_said() -> None:
+    @compiled
+    def longest(words: list[str]) -> float:
+        return float(max(map(len, words)))
+
+    @compiled
+    def doubled(value) -> float:  # type: ignore[no-untyped-def]
+        return 2.0 * value
+
+    with pytest.raises(TypeError, match=r"longest: words: no type .* list\[str\]"):
+        longest(["a"])
+    with pytest.raises(TypeError, match=r"doubled: value: .* not annotated"):
+        doubled(1.0)
 
 
 # what is said

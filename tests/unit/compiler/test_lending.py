@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from vibroimpact.compiled import compiled, why_not_compiled
-from vibroimpact.dynamics.core.records import Boolean, Integer, Matrix, Real, Vector
+from vibroimpact.arrays import Matrix, Vector
+from vibroimpact.compiled import Lent, compiled, why_not_compiled
 
 needs_compiler = pytest.mark.skipif(bool(why_not_compiled()), reason=why_not_compiled())
 
@@ -17,43 +17,43 @@ class Inner(NamedTuple):
     """Two numbers and an array."""
 
     values: Vector
-    is_marked: Boolean
-    number: Integer
+    is_marked: bool
+    number: int
 
 
 class Outer(NamedTuple):
     """A tuple in a tuple, beside an array and numbers; booleans are shorter than the rest."""
 
-    is_first: Boolean
-    is_second: Boolean
+    is_first: bool
+    is_second: bool
     inner: Inner
     matrix: Matrix
-    factor: Real
+    factor: float
 
 
-@compiled(lambda t: t.real(t.of(Inner), t.real))
-def weighted(inner, factor):
+@compiled
+def weighted(inner: Inner, factor: float) -> float:
     total = 0.0
     for number in range(len(inner.values)):
         total += factor * inner.values[number]
     return total + inner.number + (100.0 if inner.is_marked else 0.0)
 
 
-@compiled(lambda t: t.of(Outer)(t.of(Outer), t.boolean))
-def with_more(outer, keeps):
+@compiled
+def with_more(outer: Outer, keeps: bool) -> Outer:
     if keeps:
         return outer  # a tuple that was lent
     more = Inner(outer.inner.values + 1.0, not outer.inner.is_marked, outer.inner.number + 1)
     return Outer(not outer.is_first, outer.is_second, more, outer.matrix, outer.factor)
 
 
-@compiled(lambda t: t.of(Outer)(t.of(Inner), t.of(Outer)))
-def around(inner, outer):
+@compiled
+def around(inner: Inner, outer: Outer) -> Outer:
     return Outer(True, False, inner, outer.matrix, outer.factor)  # one that was lent is a member
 
 
-@compiled(lambda t: t.vector(t.lent(Outer), t.of(Inner), t.integer))
-def told(outer, inner, steps):
+@compiled
+def told(outer: Lent[Outer], inner: Inner, steps: int) -> Vector:
     now = with_more(outer, False)
     for step in range(steps):  # either lent or its own
         now = with_more(now, step % 2 == 0)
@@ -72,8 +72,8 @@ def told(outer, inner, steps):
     )
 
 
-@compiled(lambda t: t.void(t.lent(Outer)))
-def doubled(outer):
+@compiled
+def doubled(outer: Lent[Outer]) -> None:
     for number in range(len(outer.inner.values)):
         outer.inner.values[number] *= 2.0
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from vibroimpact.arrays import Cube, Matrix
 from vibroimpact.compiled import compiled, law_addresses, law_coefficients, multiply_row
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.hertz import Hertz
@@ -55,8 +56,8 @@ def with_normal_motion(
     return solved, contact, RecordedContact.of(conditions, 1e-13), grid.motion[:, : grid.points[0]]
 
 
-@compiled(lambda t: t.void(t.matrix, t.cube, t.integer, t.integer))
-def multiply(room: np.ndarray, matrices: np.ndarray, width: int, columns: int) -> None:
+@compiled
+def multiply(room: Matrix, matrices: Cube, width: int, columns: int) -> None:
     multiply_row(room, 1, matrices, 2, width, columns, 3)
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Vector
 from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.contact_records import Attempt, Balance, Beginning, Bodies, Manner
 from vibroimpact.dynamics.core.events import (
@@ -59,7 +59,7 @@ _BEFORE_END = 0.98  # in x: an event beyond is the one at the end
 _AT_END = 1e-12  # relative: an event may lie so far beyond the end of the first solution
 
 
-@compiled(lambda t: t.real(t.of(Basis), t.real))
+@compiled
 def time_at(basis: Basis, x: float) -> float:
     """Return the time at x as a part of the length of a stretch."""
     if basis.time_map == 0:
@@ -69,7 +69,7 @@ def time_at(basis: Basis, x: float) -> float:
     return x
 
 
-@compiled(lambda t: t.real(t.of(Basis), t.real))
+@compiled
 def place_at(basis: Basis, time: float) -> float:
     """Return the x of a time, both as parts of the length of a stretch."""
     time = min(max(time, 0.0), 1.0)
@@ -80,8 +80,8 @@ def place_at(basis: Basis, time: float) -> float:
     return time
 
 
-@compiled(lambda t: t.void(t.of(Basis), t.real, t.vector))
-def weights_at(basis: Basis, x: float, weights: Floats) -> None:
+@compiled
+def weights_at(basis: Basis, x: float, weights: Vector) -> None:
     """Write the weights of the start and the nodes in the interpolated value at x."""
     total = 0.0
     for node in range(len(weights)):
@@ -94,7 +94,7 @@ def weights_at(basis: Basis, x: float, weights: Floats) -> None:
         weights[node] /= total
 
 
-@compiled(lambda t: t.of(Start)(t.of(System), t.of(Surfaces), t.of(Coordinates), t.of(State)))
+@compiled
 def surface_start(
     system: System, surfaces: Surfaces, coordinates: Coordinates, state: State
 ) -> Start:
@@ -123,11 +123,7 @@ def surface_start(
     return Start(displacement, velocity, state.local, approach, outer_rate, inner_rate)
 
 
-@compiled(
-    lambda t: t.of(Beginning)(
-        t.of(Bodies), t.of(Law), t.of(Manner), t.of(State), t.of(SlidingSphere), t.real
-    )
-)
+@compiled
 def beginning_of(
     bodies: Bodies,
     law: Law,
@@ -152,25 +148,14 @@ def beginning_of(
     )
 
 
-@compiled(
-    lambda t: t.of(Attempt)(
-        t.of(Basis),
-        t.of(Bodies),
-        t.of(Manner),
-        t.of(Beginning),
-        t.of(Nodes),
-        t.vector,
-        t.boolean,
-        t.of(Event),
-    )
-)
+@compiled
 def attempt(
     basis: Basis,
     bodies: Bodies,
     manner: Manner,
     beginning: Beginning,
     guess: Nodes,
-    trend: Floats,
+    trend: Vector,
     guessed: bool,
     event: Event,
 ) -> Attempt:
@@ -214,9 +199,7 @@ def attempt(
     return Attempt(nodes, contact, part, length, solved, seen)
 
 
-@compiled(
-    lambda t: t.of(Balance)(t.of(Basis), t.of(Bodies), t.of(Manner), t.of(Beginning), t.of(Attempt))
-)
+@compiled
 def balance_of(
     basis: Basis, bodies: Bodies, manner: Manner, beginning: Beginning, tried: Attempt
 ) -> Balance:
@@ -260,7 +243,7 @@ def balance_of(
     return Balance(path, work, tried.solved and smooth and balanced)
 
 
-@compiled(lambda t: t.of(Nodes)(t.of(Basis), t.of(Basis), t.of(Contacts), t.of(Attempt), t.real))
+@compiled
 def guess_from(
     basis: Basis, other: Basis, contacts: Contacts, solved: Attempt, share: float
 ) -> Nodes:
@@ -290,7 +273,7 @@ def guess_from(
     return Nodes(np.zeros(size), force, delta)
 
 
-@compiled(lambda t: t.of(Basis)(t.of(Bases), t.integer))
+@compiled
 def basis_of(bases: Bases, time_map: int) -> Basis:
     """Return the rule under a map of time, by its number in `MAPS`."""
     if time_map == 0:
@@ -300,11 +283,7 @@ def basis_of(bases: Bases, time_map: int) -> Basis:
     return bases.release
 
 
-@compiled(
-    lambda t: t.tuple(t.boolean, t.of(Attempt), t.integer, t.of(Event))(
-        t.of(Bases), t.of(Bodies), t.of(Manner), t.of(Beginning), t.of(Attempt), t.integer
-    )
-)
+@compiled
 def up_to_event(
     bases: Bases,
     bodies: Bodies,

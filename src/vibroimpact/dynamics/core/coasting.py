@@ -24,7 +24,7 @@ _MOST_SECANTS = 200
 _TIME_ROUNDING = 1e-13  # of the time of a recoil
 
 
-@compiled(lambda t: t.real(t.of(Law), t.real, t.real))
+@compiled
 def push_at(law: Law, approach: float, rate: float) -> float:
     """Return the force with which a law would push at an approach of the surfaces [m] and its rate
     [m/s], negative where they are apart [N].
@@ -36,7 +36,7 @@ def push_at(law: Law, approach: float, rate: float) -> float:
     return float(static + dissipative)
 
 
-@compiled(lambda t: t.tuple(t.real, t.real)(t.of(System), t.of(Law), t.of(State)))
+@compiled
 def coasting_values(system: System, law: Law, state: State) -> tuple[float, float]:
     """Return numbers that are positive where a recoiling contact has separated, and where
     its law pushes again.
@@ -45,7 +45,7 @@ def coasting_values(system: System, law: Law, state: State) -> tuple[float, floa
     return law.release_level - approach, push_at(law, approach, dashpot_rate(system, state))
 
 
-@compiled(lambda t: t.real(t.of(System), t.of(Law), t.of(State), t.real, t.real, t.boolean))
+@compiled
 def change_between(
     system: System, law: Law, state: State, low: float, high: float, separates: bool
 ) -> float:
@@ -84,7 +84,7 @@ def change_between(
     return high
 
 
-@compiled(lambda t: t.tuple(t.real, t.boolean)(t.of(System), t.of(Law), t.of(Manner), t.of(State)))
+@compiled
 def end_of_coasting(system: System, law: Law, manner: Manner, state: State) -> tuple[float, bool]:
     """Return when a recoiling contact separates or pushes again [s from here], and
     whether it separates.

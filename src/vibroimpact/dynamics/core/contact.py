@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Vector
 from vibroimpact.compiled import compiled, energies_at
 from vibroimpact.dynamics.core.attempt import beginning_of
 from vibroimpact.dynamics.core.coasting import end_of_coasting
@@ -63,7 +63,7 @@ _LONG = 10.0  # in durations of a contact: a sphere in contact for longer rides
 _NOTHING = 2e-15  # of the energy of the motion: less is a rounding error
 
 
-@compiled(lambda t: t.boolean(t.of(System), t.of(Law), t.of(Manner), t.of(State)))
+@compiled
 def separates_at_no_force(system: System, law: Law, manner: Manner, state: State) -> bool:
     """Does a contact end with its force? Its law does, and the surfaces will separate;
     otherwise they close again.
@@ -73,7 +73,7 @@ def separates_at_no_force(system: System, law: Law, manner: Manner, state: State
     return bool(np.isfinite(time_to_separation(system, state, law.release_level)))
 
 
-@compiled(lambda t: t.real(t.of(Law), t.of(Manner), t.real))
+@compiled
 def energy_held(law: Law, manner: Manner, delta: float) -> float:
     """Return the energy that a contact stores at an indentation of its law [J], with
     rounding errors set to zero.
@@ -82,20 +82,20 @@ def energy_held(law: Law, manner: Manner, delta: float) -> float:
     return held if abs(held) > _NOTHING * manner.energy else 0.0
 
 
-@compiled(lambda t: t.real(t.of(System), t.of(Law), t.of(State)))
+@compiled
 def indentation_in(system: System, law: Law, state: State) -> float:
     """Return the indentation of a law in a state [m], at least that of release."""
     return law_indentation(law, max(approach_of(system, state)[0], law.release_level))
 
 
-@compiled(lambda t: t.real(t.of(Law), t.real))
+@compiled
 def plastic_work(law: Law, delta: float) -> float:
     """Return the plastic work of a law since its memory last changed [J], at an indentation [m]."""
     _, plastic = energies_at(law.addresses[1])(delta, law.coefficients)
     return float(plastic)
 
 
-@compiled(lambda t: t.tuple(t.of(Law), t.integer)(t.of(Law), t.integer, t.real, t.of(Parts)))
+@compiled
 def law_turned(law: Law, number: int, delta: float, parts: Parts) -> tuple[Law, int]:
     """Return a law, and its number in `parts`, after the indentation has turned at its largest [m];
     `number`: that of the law before.
@@ -104,18 +104,7 @@ def law_turned(law: Law, number: int, delta: float, parts: Parts) -> tuple[Law, 
     return after, write_law(parts, number, delta, after)
 
 
-@compiled(
-    lambda t: t.tuple(t.integer, t.of(Progress), t.of(State), t.of(Law))(
-        t.of(Bases),
-        t.of(Bodies),
-        t.of(Manner),
-        t.of(Law),
-        t.of(State),
-        t.of(Progress),
-        t.vector,
-        t.of(Parts),
-    )
-)
+@compiled
 def follow_contact(
     bases: Bases,
     bodies: Bodies,
@@ -123,7 +112,7 @@ def follow_contact(
     law: Law,
     state: State,
     progress: Progress,
-    lost: Floats,
+    lost: Vector,
     parts: Parts,
 ) -> tuple[int, Progress, State, Law]:
     """Follow a contact until it is released, or until something is to be decided; return how it

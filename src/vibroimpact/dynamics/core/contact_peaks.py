@@ -13,11 +13,7 @@ from vibroimpact.dynamics.core.records import Bases, Law
 _NEAR = 0.98
 
 
-@compiled(
-    lambda t: t.of(Peaks)(
-        t.of(Bases), t.of(Law), t.of(Peaks), t.of(Parts), t.integer, t.real, t.real
-    )
-)
+@compiled
 def peaks_since(
     bases: Bases,
     law: Law,

@@ -1,30 +1,24 @@
 """What the core follows one contact with, in named tuples.
 
-The annotations name the types of compiled code, in `vibroimpact.compiler.types`.
+The annotations name the types of compiled code.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-from vibroimpact.arrays import Integers
+from vibroimpact.arrays import Cube, Integers, Matrix, Vector
 from vibroimpact.dynamics.core.records import (
-    Boolean,
     Contacts,
     Coordinates,
-    Cube,
     Event,
     Histories,
-    Integer,
-    Matrix,
     Nodes,
     Path,
-    Real,
     Start,
     State,
     Surfaces,
     System,
-    Vector,
 )
 from vibroimpact.dynamics.core.surface_friction_records import (
     SlidingPart,
@@ -72,8 +66,8 @@ class Attempt(NamedTuple):
     nodes: Nodes
     contact: Histories
     sliding: SlidingPart
-    length: Real
-    solved: Boolean
+    length: float
+    solved: bool
     event: Event
 
 
@@ -99,7 +93,7 @@ class Balance(NamedTuple):
 
     path: Path
     work: Vector
-    resolved: Boolean
+    resolved: bool
 
 
 class NextStretch(NamedTuple):
@@ -110,12 +104,12 @@ class NextStretch(NamedTuple):
     since the start [s], else infinite.
     """
 
-    accepted: Boolean
+    accepted: bool
     tried: Attempt
     balance: Balance
-    time_map: Integer
+    time_map: int
     event: Event
-    event_time: Real
+    event_time: float
 
 
 class Begun(NamedTuple):
@@ -123,9 +117,9 @@ class Begun(NamedTuple):
     `Parts`, and friction.
     """
 
-    time: Real
+    time: float
     state: State
-    law: Integer
+    law: int
     sphere: SlidingSphere
 
 
@@ -137,15 +131,15 @@ class StretchEnd(NamedTuple):
     largest_force: at a node [N]. roughness: as in `Histories`.
     """
 
-    length: Real
+    length: float
     state: State
     sphere: SlidingSphere
-    delta: Real
-    force: Real
-    trend: Real
-    closing: Real
-    largest_force: Real
-    roughness: Real
+    delta: float
+    force: float
+    trend: float
+    closing: float
+    largest_force: float
+    roughness: float
 
 
 class Manner(NamedTuple):
@@ -157,16 +151,16 @@ class Manner(NamedTuple):
     length of a stretch [s]. most_steps: how many stretches are tried in an impact.
     """
 
-    tension: Integer
-    contact_end: Integer
-    motion_speed: Real
-    energy: Real
-    span: Real
-    tolerance: Real
-    begun: Real
-    until: Real
-    longest: Real
-    most_steps: Integer
+    tension: int
+    contact_end: int
+    motion_speed: float
+    energy: float
+    span: float
+    tolerance: float
+    begun: float
+    until: float
+    longest: float
+    most_steps: int
 
 
 class Peaks(NamedTuple):
@@ -174,10 +168,10 @@ class Peaks(NamedTuple):
     touch [s].
     """
 
-    force: Real
-    time_of_force: Real
-    indentation: Real
-    time_of_indentation: Real
+    force: float
+    time_of_force: float
+    indentation: float
+    time_of_indentation: float
 
 
 class Progress(NamedTuple):
@@ -191,19 +185,19 @@ class Progress(NamedTuple):
     [m]: of the contact at a node; peaks: of the impact, also between nodes. sphere: friction.
     """
 
-    time: Real
-    next_length: Real
-    delta: Real
-    force: Real
-    trend: Real
-    closing: Real
-    fresh: Boolean
-    pushes: Boolean
-    steps: Integer
-    law: Integer
-    plastic: Real
-    largest_force: Real
-    deepest: Real
+    time: float
+    next_length: float
+    delta: float
+    force: float
+    trend: float
+    closing: float
+    fresh: bool
+    pushes: bool
+    steps: int
+    law: int
+    plastic: float
+    largest_force: float
+    deepest: float
     peaks: Peaks
     sphere: SlidingSphere
 

@@ -9,7 +9,7 @@ _MOST_ITERATIONS = 6
 _BEFORE_END = 0.75  # at the end itself the slope may be zero
 
 
-@compiled(lambda t: t.tuple(t.real, t.real)(t.of(Cubic), t.real))
+@compiled
 def cubic_at(cubic: Cubic, share: float) -> tuple[float, float]:
     """Return value and slope of a cubic at a share of the step."""
     change = cubic.end_value - cubic.value
@@ -19,7 +19,7 @@ def cubic_at(cubic: Cubic, share: float) -> tuple[float, float]:
     return value, cubic.slope + share * (2.0 * bend + 3.0 * share * twist)
 
 
-@compiled(lambda t: t.real(t.of(Cubic)))
+@compiled
 def turn_of(cubic: Cubic) -> float:
     """Return the share of the step at which the slope of a cubic changes sign; 0 where it
     does not.
@@ -36,7 +36,7 @@ def turn_of(cubic: Cubic) -> float:
     return min(max(share, 0.0), 1.0)
 
 
-@compiled(lambda t: t.real(t.of(Cubic), t.real))
+@compiled
 def share_at(cubic: Cubic, value: float) -> float:
     """Return the share of the step at which a cubic that passes a value does so, by
     Newton's method from the straight line.

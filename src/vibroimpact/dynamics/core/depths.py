@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from vibroimpact.arrays import Floats, Integers
+from vibroimpact.arrays import Integers, Matrix, Vector
 from vibroimpact.compiled import compiled, energies_at, force_at
 from vibroimpact.dynamics.core.line_events import narrowed, secant_of
 from vibroimpact.dynamics.core.line_records import Bracket
@@ -17,8 +17,8 @@ _MOST_BOUNDS = 60  # each of them four times as far
 _MOST_ITERATIONS = 60
 
 
-@compiled(lambda t: t.real(t.integers, t.vector, t.real))
-def static_work_of(addresses: Integers, coefficients: Floats, delta: float) -> float:
+@compiled
+def static_work_of(addresses: Integers, coefficients: Vector, delta: float) -> float:
     """Return the work of the static force of a law since touch [J]; `addresses`: of its
     functions.
     """
@@ -26,9 +26,9 @@ def static_work_of(addresses: Integers, coefficients: Floats, delta: float) -> f
     return float(elastic + plastic)
 
 
-@compiled(lambda t: t.real(t.integers, t.vector, t.real, t.real, t.real))
+@compiled
 def undamped_depth(
-    addresses: Integers, coefficients: Floats, touch: float, energy: float, weight: float
+    addresses: Integers, coefficients: Vector, touch: float, energy: float, weight: float
 ) -> float:
     """Return the largest indentation of an impact without damping [m], to a relative 1e-3.
 
@@ -63,9 +63,9 @@ def undamped_depth(
     return bounded_depth(addresses, coefficients, touch, energy, weight)
 
 
-@compiled(lambda t: t.real(t.integers, t.vector, t.real, t.real, t.real))
+@compiled
 def bounded_depth(
-    addresses: Integers, coefficients: Floats, touch: float, energy: float, weight: float
+    addresses: Integers, coefficients: Vector, touch: float, energy: float, weight: float
 ) -> float:
     """Return what `undamped_depth` does, by the secant within bounds; at the last bound
     where there is none, as without a force.
@@ -98,14 +98,14 @@ def bounded_depth(
     return touch + secant_of(bracket)
 
 
-@compiled(lambda t: t.void(t.integers, t.matrix, t.vector, t.vector, t.vector, t.vector))
+@compiled
 def write_undamped_depths(
     addresses: Integers,
-    coefficients: Floats,
-    touch: Floats,
-    energy: Floats,
-    weight: Floats,
-    depths: Floats,
+    coefficients: Matrix,
+    touch: Vector,
+    energy: Vector,
+    weight: Vector,
+    depths: Vector,
 ) -> None:
     """Write the largest indentations of B impacts without damping [m] (B,); the other
     arguments as in `undamped_depth`, for each.

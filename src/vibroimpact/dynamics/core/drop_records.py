@@ -1,16 +1,15 @@
 """What the core follows rigid drops with, from their starts to the ends of their runs.
 
-The annotations name the types of compiled code, in `vibroimpact.compiler.types`.
+The annotations name the types of compiled code.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-from vibroimpact.arrays import Integers
+from vibroimpact.arrays import Cube, Integers, Matrix, Vector
 from vibroimpact.dynamics.core.friction_records import Rubbing
 from vibroimpact.dynamics.core.line_records import ContactManner
-from vibroimpact.dynamics.core.records import Boolean, Cube, Matrix, Real, Vector
 
 (
     MASS,
@@ -136,10 +135,10 @@ class DropManner(NamedTuple):
     """
 
     contacts: ContactManner
-    has_force: Boolean
-    lasts: Boolean
-    waits: Boolean
-    is_told_flights: Boolean
+    has_force: bool
+    lasts: bool
+    waits: bool
+    is_told_flights: bool
     stops: StopRules
 
 
@@ -174,8 +173,8 @@ class ObliqueDrops(NamedTuple):
     """
 
     rubbing: Rubbing
-    half_x: Real
-    half_y: Real
+    half_x: float
+    half_y: float
     spheres: Matrix
     along: Matrix
     friction: Matrix
@@ -187,8 +186,8 @@ class FreeFall(NamedTuple):
     times are infinite if they do not come. is_beside: is the centre beside the plate then?
     """
 
-    start: Real
-    top: Real
-    touch: Real
-    speed: Real
-    is_beside: Boolean
+    start: float
+    top: float
+    touch: float
+    speed: float
+    is_beside: bool

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from vibroimpact.arrays import Floats, Integers
+from vibroimpact.arrays import Integers, Vector
 from vibroimpact.compiled import compiled, compressed_at, energies_at, levels_at
 from vibroimpact.dynamics.core.depths import undamped_depth
 from vibroimpact.dynamics.core.drop_records import (
@@ -80,7 +80,7 @@ LEAST_MISSING = 1e-6  # of a restitution of one, with which bounces have an end
 _ENDS_AT_PULL_OFF = ENDS.index("pull-off")
 
 
-@compiled(lambda t: t.void(t.of(DropManner), t.of(Drops), t.integer))
+@compiled
 def follow_drops(manner: DropManner, drops: Drops, pause: int) -> None:
     """Follow drops along the normal until their runs end, or they have had `pause` impacts.
 
@@ -127,7 +127,7 @@ def follow_drops(manner: DropManner, drops: Drops, pause: int) -> None:
         drops.impacts[drop] = impacts
 
 
-@compiled(lambda t: t.integer(t.of(DropManner), t.of(Drops), t.integer))
+@compiled
 def ready(manner: DropManner, drops: Drops, drop: int) -> int:
     """Give a drop that begins, or that has waited at its touch, the coefficients of its law; return
     its phase then.
@@ -144,9 +144,9 @@ def ready(manner: DropManner, drops: Drops, drop: int) -> int:
     return int(phase)
 
 
-@compiled(lambda t: t.void(t.boolean, t.integers, t.vector, t.vector, t.vector))
+@compiled
 def begin(
-    has_force: bool, addresses: Integers, fresh: Floats, coefficients: Floats, state: Floats
+    has_force: bool, addresses: Integers, fresh: Vector, coefficients: Vector, state: Vector
 ) -> None:
     """Give a drop the coefficients of its first law, and a rest speed unless it has one.
 
@@ -164,8 +164,8 @@ def begin(
         state[REST_SPEED] = least
 
 
-@compiled(lambda t: t.real(t.boolean, t.integers, t.vector))
-def touch_gap(has_force: bool, addresses: Integers, coefficients: Floats) -> float:
+@compiled
+def touch_gap(has_force: bool, addresses: Integers, coefficients: Vector) -> float:
     """Return the gap at which a drop touches next [m]: zero, or below it in a dent."""
     if not has_force:
         return 0.0
@@ -173,16 +173,16 @@ def touch_gap(has_force: bool, addresses: Integers, coefficients: Floats) -> flo
     return -float(level)
 
 
-@compiled(lambda t: t.void(t.of(DropManner), t.of(Drops), t.vector))
-def write_touch_gaps(manner: DropManner, drops: Drops, gaps: Floats) -> None:
+@compiled
+def write_touch_gaps(manner: DropManner, drops: Drops, gaps: Vector) -> None:
     """Write the gaps at which drops touch next [m] (B,)."""
     for drop in range(len(gaps)):
         coefficients = drops.coefficients[drop]
         gaps[drop] = touch_gap(manner.has_force, manner.contacts.addresses, coefficients)
 
 
-@compiled(lambda t: t.integer(t.real, t.vector, t.vector))
-def collide_at_once(separation: float, state: Floats, row: Floats) -> int:
+@compiled
+def collide_at_once(separation: float, state: Vector, row: Vector) -> int:
     """Let a drop rebound at its touch with a separation speed [m/s], and return its phase then."""
     speed = state[CLOSING]
     lost = 0.5 * state[MASS] * (speed * speed - separation * separation)
@@ -206,9 +206,9 @@ def collide_at_once(separation: float, state: Floats, row: Floats) -> int:
     return END_BY_REST_SPEED
 
 
-@compiled(lambda t: t.void(t.integers, t.boolean, t.vector, t.real, t.vector))
+@compiled
 def remember(
-    addresses: Integers, lasts: bool, fresh: Floats, deepest: float, coefficients: Floats
+    addresses: Integers, lasts: bool, fresh: Vector, deepest: float, coefficients: Vector
 ) -> None:
     """Write the coefficients of a law, which remembers the deepest indentation so far [m] if its
     memory lasts.
@@ -221,8 +221,8 @@ def remember(
             compressed_at(addresses[3])(deepest, fresh, coefficients)
 
 
-@compiled(lambda t: t.integer(t.of(StopRules), t.of(FreeFall), t.integer, t.vector))
-def fly(stops: StopRules, flight: FreeFall, impacts: int, state: Floats) -> int:
+@compiled
+def fly(stops: StopRules, flight: FreeFall, impacts: int, state: Vector) -> int:
     """Let a drop fly until it touches, or until a rule ends its run; return its phase then."""
     end, ending = first_end(stops, flight, impacts)
     time = min(end, flight.touch)
@@ -239,8 +239,8 @@ def fly(stops: StopRules, flight: FreeFall, impacts: int, state: Floats) -> int:
     return AT_TOUCH
 
 
-@compiled(lambda t: t.of(LineManner)(t.of(LineManner), t.of(Law), t.vector))
-def bodies_at_touch(manner: LineManner, law: Law, state: Floats) -> LineManner:
+@compiled
+def bodies_at_touch(manner: LineManner, law: Law, state: Vector) -> LineManner:
     """Return the bodies of a drop as it touches, with the depth that it would reach undamped."""
     mass = state[MASS]
     gravity = state[GRAVITY]
@@ -248,7 +248,7 @@ def bodies_at_touch(manner: LineManner, law: Law, state: Floats) -> LineManner:
     return with_bodies(manner, mass, gravity, depth, speed)
 
 
-@compiled(lambda t: t.tuple(t.real, t.real)(t.of(Law), t.integer, t.real, t.real))
+@compiled
 def depth_and_speed(law: Law, contact_end: int, mass: float, gravity: float) -> tuple[float, float]:
     """Return the depth that a rigid body would reach undamped [m], and the scale of its speed in
     contact [m/s]: at its touch, or due to gravity and adhesion in a soft one.
@@ -264,15 +264,15 @@ def depth_and_speed(law: Law, contact_end: int, mass: float, gravity: float) -> 
     return depth, math.sqrt(max(scale, 0.0))
 
 
-@compiled(lambda t: t.real(t.of(Law), t.real))
+@compiled
 def elastic_energy(law: Law, delta: float) -> float:
     """Return the energy that a law stores at an indentation [J]."""
     elastic, _ = energies_at(law.addresses[1])(delta, law.coefficients)
     return float(elastic)
 
 
-@compiled(lambda t: t.void(t.vector, t.vector, t.of(LineContact)))
-def write_contact(state: Floats, row: Floats, contact: LineContact) -> None:
+@compiled
+def write_contact(state: Vector, row: Vector, contact: LineContact) -> None:
     """Write the columns of a contact, and where it leaves the drop."""
     touch = state[TIME]
     gravity = state[GRAVITY]
@@ -298,16 +298,14 @@ def write_contact(state: Floats, row: Floats, contact: LineContact) -> None:
     state[VELOCITY] = -contact.end.rate
 
 
-@compiled(
-    lambda t: t.integer(t.boolean, t.of(Law), t.of(LineContact), t.vector, t.vector, t.vector)
-)
+@compiled
 def leave(
     waits: bool,
     law: Law,
     contact: LineContact,
-    next_coefficients: Floats,
-    state: Floats,
-    row: Floats,
+    next_coefficients: Vector,
+    state: Vector,
+    row: Vector,
 ) -> int:
     """Release a drop from its contact, and bring it to rest if it is slow; return its phase then.
 
@@ -328,8 +326,8 @@ def leave(
     return END_BY_REST_SPEED
 
 
-@compiled(lambda t: t.integer(t.vector, t.vector, t.of(LineContact), t.of(Law), t.real))
-def release(state: Floats, row: Floats, contact: LineContact, law: Law, next_level: float) -> int:
+@compiled
+def release(state: Vector, row: Vector, contact: LineContact, law: Law, next_level: float) -> int:
     """Write what the contact of a drop took and how it leaves it, and return its phase then.
 
     It stays where it has too little energy to leave the indentation, or falls back before it has
@@ -361,8 +359,8 @@ def release(state: Floats, row: Floats, contact: LineContact, law: Law, next_lev
     return phase
 
 
-@compiled(lambda t: t.void(t.vector, t.vector))
-def write_rebound(state: Floats, row: Floats) -> None:
+@compiled
+def write_rebound(state: Vector, row: Vector) -> None:
     """Write the restitution of an impact, and the height to which a drop rises after it."""
     separation = row[SEPARATION]
     row[RESTITUTION] = separation / row[APPROACH]
@@ -371,11 +369,11 @@ def write_rebound(state: Floats, row: Floats) -> None:
         row[REBOUND] = state[RADIUS] + state[GAP] + rise
 
 
-@compiled(lambda t: t.void(t.vector, t.integers, t.vector, t.real, t.real, t.real))
+@compiled
 def bring_to_rest(
-    state: Floats,
+    state: Vector,
     addresses: Integers,
-    coefficients: Floats,
+    coefficients: Vector,
     release_level: float,
     time: float,
     stored: float,
@@ -390,8 +388,8 @@ def bring_to_rest(
     lie_still(state, time, stored, sag, stored_at_rest)
 
 
-@compiled(lambda t: t.void(t.vector, t.real, t.real, t.real, t.real))
-def lie_still(state: Floats, time: float, stored: float, sag: float, stored_at_rest: float) -> None:
+@compiled
+def lie_still(state: Vector, time: float, stored: float, sag: float, stored_at_rest: float) -> None:
     """Write that a drop has come to rest at a time [s] with an indentation `sag` [m].
 
     The energy of the contact was `stored` and is `stored_at_rest` [J]; what the drop had beyond
@@ -408,14 +406,14 @@ def lie_still(state: Floats, time: float, stored: float, sag: float, stored_at_r
     state[WRITTEN_OFF] = energy - (stored_at_rest - weight * sag)
 
 
-@compiled(lambda t: t.boolean(t.vector))
-def is_slow(state: Floats) -> bool:
+@compiled
+def is_slow(state: Vector) -> bool:
     """Does a drop separate below the rest speed, or not at all?"""
     return is_too_slow(state[VELOCITY], state[REST_SPEED])
 
 
-@compiled(lambda t: t.real(t.vector, t.vector))
-def end_by_bounces(state: Floats, row: Floats) -> float:
+@compiled
+def end_by_bounces(state: Vector, row: Vector) -> float:
     """End the run of a drop when infinitely many bounces with the last restitution would, and
     return that time [s]; it ends now where they would not.
 

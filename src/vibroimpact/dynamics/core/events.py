@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Bools, Floats
+from vibroimpact.arrays import Bools, Vector
 from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.law import law_of
 from vibroimpact.dynamics.core.linear import largest_of, least_of, product
@@ -36,8 +36,8 @@ _ZERO_RATE = 1e-9  # of the speed of the motion: a slower approach counts as hav
 _SLACK = 1e-11  # of the force
 
 
-@compiled(lambda t: t.tuple(t.real, t.boolean)(t.vector, t.booleans))
-def crossing(values: Floats, reached: Bools) -> tuple[float, bool]:
+@compiled
+def crossing(values: Vector, reached: Bools) -> tuple[float, bool]:
     """Return where values on the grid fall below zero, as a part of it, by the secant;
     and whether they do.
     """
@@ -51,11 +51,7 @@ def crossing(values: Floats, reached: Bools) -> tuple[float, bool]:
     return 1.0, False
 
 
-@compiled(
-    lambda t: t.of(Event)(
-        t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Histories), t.of(Nodes), t.real, t.real
-    )
-)
+@compiled
 def first_event(
     basis: Basis,
     surfaces: Surfaces,
@@ -74,18 +70,7 @@ def first_event(
     return first
 
 
-@compiled(
-    lambda t: t.of(Event)(
-        t.of(Basis),
-        t.of(Surfaces),
-        t.of(Contacts),
-        t.of(Histories),
-        t.of(Nodes),
-        t.real,
-        t.real,
-        t.integer,
-    )
-)
+@compiled
 def first_event_of(
     basis: Basis,
     surfaces: Surfaces,

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from vibroimpact.arrays import Array, Floats, Integers
+from vibroimpact.arrays import Array, Integers, Matrix, Vector
 from vibroimpact.compiled import compiled, scalar
 from vibroimpact.dynamics.core.fall_records import Corners, Falling, FallRule, FallRules, Moving
 
@@ -50,7 +50,7 @@ def drag_coefficient(reynolds: Array) -> Array:
     )
 
 
-@compiled(lambda t: t.real(t.of(Falling), t.integer, t.real))
+@compiled
 def drag_of(falling: Falling, drop: int, speed: float) -> float:
     """Return by how much the fluid slows a sphere down at a speed [m/s^2]."""
     fast = max(speed, _STILL)
@@ -60,8 +60,8 @@ def drag_of(falling: Falling, drop: int, speed: float) -> float:
     return float(falling.drag[drop] * coefficient * fast * fast)
 
 
-@compiled(lambda t: t.real(t.matrix, t.integer))
-def size_of(vectors: Floats, column: int) -> float:
+@compiled
+def size_of(vectors: Matrix, column: int) -> float:
     """Return the magnitude of a vector in a column (C, b)."""
     squared = 0.0
     for component in range(len(vectors)):
@@ -69,9 +69,9 @@ def size_of(vectors: Floats, column: int) -> float:
     return math.sqrt(squared)
 
 
-@compiled(lambda t: t.real(t.of(Falling), t.integer, t.matrix, t.integer, t.matrix, t.integer))
+@compiled
 def accelerate(
-    falling: Falling, drop: int, velocity: Floats, column: int, acceleration: Floats, into: int
+    falling: Falling, drop: int, velocity: Matrix, column: int, acceleration: Matrix, into: int
 ) -> float:
     """Write the acceleration of a sphere at a velocity into a column (C, .) [m/s^2];
     return the power per mass that drag takes [W/kg].
@@ -86,8 +86,8 @@ def accelerate(
     return float(drag * speed * falling.inertia[drop])
 
 
-@compiled(lambda t: t.boolean(t.of(Falling), t.integer, t.matrix, t.integer))
-def keeps(falling: Falling, drop: int, velocity: Floats, column: int) -> bool:
+@compiled
+def keeps(falling: Falling, drop: int, velocity: Matrix, column: int) -> bool:
     """Is a velocity kept, as the terminal one, or as rest without gravity?"""
     acceleration = np.empty((len(velocity), 1))
     accelerate(falling, drop, velocity, column, acceleration, 0)
@@ -97,8 +97,8 @@ def keeps(falling: Falling, drop: int, velocity: Floats, column: int) -> bool:
     return size_of(velocity, column) <= _STILL
 
 
-@compiled(lambda t: t.real(t.of(Falling), t.integer, t.matrix, t.integer))
-def longest_piece(falling: Falling, drop: int, velocity: Floats, column: int) -> float:
+@compiled
+def longest_piece(falling: Falling, drop: int, velocity: Matrix, column: int) -> float:
     """Return the longest piece from a velocity [s]; infinite where the velocity is kept."""
     if keeps(falling, drop, velocity, column):
         return np.inf
@@ -112,8 +112,8 @@ def longest_piece(falling: Falling, drop: int, velocity: Floats, column: int) ->
     return 0.5 * _LONGEST * time
 
 
-@compiled(lambda t: t.vector(t.of(Falling), t.matrix))
-def longest_pieces(falling: Falling, velocity: Floats) -> Floats:
+@compiled
+def longest_pieces(falling: Falling, velocity: Matrix) -> Vector:
     """Return the longest pieces of all drops from velocities (C, b) [s] (b,)."""
     longest = np.empty(velocity.shape[1])
     for drop in range(len(longest)):
@@ -121,8 +121,8 @@ def longest_pieces(falling: Falling, velocity: Floats) -> Floats:
     return longest
 
 
-@compiled(lambda t: t.matrix(t.of(Falling), t.integers, t.matrix))
-def accelerations(falling: Falling, drops: Integers, velocity: Floats) -> Floats:
+@compiled
+def accelerations(falling: Falling, drops: Integers, velocity: Matrix) -> Matrix:
     """Return the accelerations of drops at velocities (C, b) [m/s^2] (C, b)."""
     found = np.empty(velocity.shape)
     for column in range(len(drops)):
@@ -130,7 +130,7 @@ def accelerations(falling: Falling, drops: Integers, velocity: Floats) -> Floats
     return found
 
 
-@compiled(lambda t: t.real(t.real, t.real, t.real))
+@compiled
 def time_to_fall(height: float, down: float, mean: float) -> float:
     """Return the time of a fall through a height [s], from a downward velocity and half
     the mean acceleration of its first part.
@@ -140,20 +140,7 @@ def time_to_fall(height: float, down: float, mean: float) -> float:
     return 2.0 * height / (down + math.sqrt(max(down * down + 4.0 * mean * height, 0.0)))
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(FallRule),
-        t.of(Falling),
-        t.integer,
-        t.of(Moving),
-        t.integer,
-        t.integer,
-        t.real,
-        t.real,
-        t.of(Moving),
-        t.integer,
-    )
-)
+@compiled
 def follow_piece(
     rule: FallRule,
     falling: Falling,
@@ -238,7 +225,7 @@ def follow_piece(
         moving.velocity[component, into] = begin.velocity[component, at] + time * gained
 
 
-@compiled(lambda t: t.of(Moving)(t.integer, t.integer))
+@compiled
 def room_for(components: int, columns: int) -> Moving:
     """Return room for motions."""
     return Moving(
@@ -249,13 +236,9 @@ def room_for(components: int, columns: int) -> Moving:
     )
 
 
-@compiled(
-    lambda t: t.of(Moving)(
-        t.of(FallRule), t.of(Falling), t.of(Moving), t.integers, t.vector, t.vector
-    )
-)
+@compiled
 def follow_pieces(
-    rule: FallRule, falling: Falling, begin: Moving, ends: Integers, first: Floats, second: Floats
+    rule: FallRule, falling: Falling, begin: Moving, ends: Integers, first: Vector, second: Vector
 ) -> Moving:
     """Return the motion of all drops at the end of a piece of each, as `follow_piece` does."""
     found = room_for(len(begin.velocity), len(ends))
@@ -266,7 +249,7 @@ def follow_pieces(
     return found
 
 
-@compiled(lambda t: t.of(Moving)(t.of(FallRule), t.of(Falling), t.of(Moving)))
+@compiled
 def rise(rule: FallRule, falling: Falling, begin: Moving) -> Moving:
     """Return the motion of all drops at the end of a piece upwards, which the top of the
     flight ends at the latest.
@@ -296,11 +279,9 @@ def rise(rule: FallRule, falling: Falling, begin: Moving) -> Moving:
     return found
 
 
-@compiled(
-    lambda t: t.of(Moving)(t.of(FallRules), t.of(Falling), t.of(Corners), t.integers, t.vector)
-)
+@compiled
 def motion_at(
-    rules: FallRules, falling: Falling, corners: Corners, drops: Integers, elapsed: Floats
+    rules: FallRules, falling: Falling, corners: Corners, drops: Integers, elapsed: Vector
 ) -> Moving:
     """Return the motion of drops at times since the starts of their flights [s] (m,)."""
     components = corners.place.shape[1]

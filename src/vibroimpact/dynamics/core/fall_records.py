@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from vibroimpact.dynamics.core.records import Cube, Integer, Matrix, Vector
+from vibroimpact.arrays import Cube, Matrix, Vector
 
 
 class Moving(NamedTuple):
@@ -32,7 +32,7 @@ class Corners(NamedTuple):
     place: Cube
     velocity: Cube
     lost: Matrix
-    top: Integer
+    top: int
 
 
 class Falling(NamedTuple):

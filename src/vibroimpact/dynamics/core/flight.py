@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.records import Flight, State, System
 
 
-@compiled(lambda t: t.of(Flight)(t.of(System), t.real))
+@compiled
 def flight_of(system: System, time: float) -> Flight:
     """Return what a free motion of some time [s] does to any state, for any damping ratio."""
     number = len(system.frequency)
@@ -40,7 +40,7 @@ def flight_of(system: System, time: float) -> Flight:
     return Flight(time, by_displacement, by_velocity, fading)
 
 
-@compiled(lambda t: t.of(State)(t.of(System), t.of(State), t.of(Flight)))
+@compiled
 def flown(system: System, state: State, flight: Flight) -> State:
     """Return the state after a flight from a state on."""
     number = len(state.displacement)
@@ -60,13 +60,13 @@ def flown(system: System, state: State, flight: Flight) -> State:
     return State(displacement, velocity, state.local * flight.fading)
 
 
-@compiled(lambda t: t.of(State)(t.of(System), t.of(State), t.real))
+@compiled
 def state_after(system: System, state: State, time: float) -> State:
     """Return the state after free motion for a time [s]."""
     return flown(system, state, flight_of(system, time))
 
 
-@compiled(lambda t: t.tuple(t.real, t.real)(t.of(System), t.of(State)))
+@compiled
 def approach_of(system: System, state: State) -> tuple[float, float]:
     """Return the approach of the surfaces [m], negative where there is a gap, and its
     rate without contact force [m/s].
@@ -82,7 +82,7 @@ def approach_of(system: System, state: State) -> tuple[float, float]:
     return approach, rate
 
 
-@compiled(lambda t: t.real(t.of(System), t.of(State)))
+@compiled
 def dashpot_rate(system: System, state: State) -> float:
     """Return the rate at the dashpot of the contact law without contact force [m/s]."""
     rate = 0.0
@@ -93,7 +93,7 @@ def dashpot_rate(system: System, state: State) -> float:
     return rate
 
 
-@compiled(lambda t: t.real(t.of(System), t.of(State)))
+@compiled
 def local_energy(system: System, state: State) -> float:
     """Return the energy in the springs of the massless elements [J]."""
     energy = 0.0
@@ -102,7 +102,7 @@ def local_energy(system: System, state: State) -> float:
     return energy
 
 
-@compiled(lambda t: t.real(t.of(System), t.of(State)))
+@compiled
 def rigid_rate(system: System, state: State) -> float:
     """Return the rate of the approach by the rigid motions [m/s]."""
     rate = 0.0
@@ -111,7 +111,7 @@ def rigid_rate(system: System, state: State) -> float:
     return rate
 
 
-@compiled(lambda t: t.real(t.of(System), t.of(State)))
+@compiled
 def driven_rate(system: System, state: State) -> float:
     """Return the rate of the approach by the driven coordinates [m/s]."""
     rate = 0.0
@@ -121,7 +121,7 @@ def driven_rate(system: System, state: State) -> float:
     return rate
 
 
-@compiled(lambda t: t.real(t.of(System), t.of(State)))
+@compiled
 def separation_speed(system: System, state: State) -> float:
     """Return the speed at which the centres move apart [m/s], or the sphere from what drives the
     plate.
@@ -129,7 +129,7 @@ def separation_speed(system: System, state: State) -> float:
     return -(rigid_rate(system, state) + driven_rate(system, state))
 
 
-@compiled(lambda t: t.real(t.of(System), t.of(State)))
+@compiled
 def vibration_energy(system: System, state: State) -> float:
     """Return the kinetic and strain energy of the modes [J], without driven coordinates."""
     energy = 0.0
@@ -140,7 +140,7 @@ def vibration_energy(system: System, state: State) -> float:
     return energy
 
 
-@compiled(lambda t: t.real(t.of(System), t.of(State)))
+@compiled
 def mechanical_energy(system: System, state: State) -> float:
     """Return the kinetic, potential and strain energy [J], without what the contact stores."""
     energy = local_energy(system, state) + vibration_energy(system, state)
@@ -151,7 +151,7 @@ def mechanical_energy(system: System, state: State) -> float:
     return energy
 
 
-@compiled(lambda t: t.real(t.of(System), t.of(State)))
+@compiled
 def energy_of_approach(system: System, state: State) -> float:
     """Return the mechanical energy [J], without what the contact stores, and without that
     of free bodies moving together.
@@ -166,8 +166,8 @@ def energy_of_approach(system: System, state: State) -> float:
     return energy - 0.5 * (of_rigid - system.mass * along * along)
 
 
-@compiled(lambda t: t.vector(t.of(System), t.of(State), t.of(State)))
-def lost_in_flight(system: System, before: State, after: State) -> Floats:
+@compiled
+def lost_in_flight(system: System, before: State, after: State) -> Vector:
     """Return the energy lost between two states of a free motion [J] (n + 1,): in each
     coordinate, and last in the massless elements.
     """
@@ -182,7 +182,7 @@ def lost_in_flight(system: System, before: State, after: State) -> Floats:
     return lost
 
 
-@compiled(lambda t: t.real(t.of(System), t.of(State)))
+@compiled
 def greatest_vibration(system: System, state: State) -> float:
     """Return a bound of the future contribution of modes and massless elements to the
     approach [m], from their energy.

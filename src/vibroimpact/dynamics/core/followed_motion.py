@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix, Vector
 from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.events import TENSION_CUT
 from vibroimpact.dynamics.core.law import law_remembering
@@ -39,7 +39,7 @@ _NONE, _STEEP = 1e-6, 1e-2
 """Parts of the largest force: one that is zero, and a slope that is not."""
 
 
-@compiled(lambda t: t.of(LineManner)(t.of(LineManner), t.real))
+@compiled
 def within(manner: LineManner, tolerance: float) -> LineManner:
     """Return the bodies with another relative error allowed in a step."""
     return LineManner(
@@ -55,7 +55,7 @@ def within(manner: LineManner, tolerance: float) -> LineManner:
     )
 
 
-@compiled(lambda t: t.tuple(t.of(LineContact), t.of(LineSteps))(t.of(Law), t.of(LineManner)))
+@compiled
 def recorded(law: Law, manner: LineManner) -> tuple[LineContact, LineSteps]:
     """Return a contact that is followed step by step, and its steps."""
     room = _ROOM
@@ -73,8 +73,8 @@ def recorded(law: Law, manner: LineManner) -> tuple[LineContact, LineSteps]:
         room = steps.written[0]
 
 
-@compiled(lambda t: t.vector(t.of(LineContact), t.of(LineSteps)))
-def corners_of(contact: LineContact, steps: LineSteps) -> Floats:
+@compiled
+def corners_of(contact: LineContact, steps: LineSteps) -> Vector:
     """Return the times between which the force of a contact is smooth, from touch to its end
     [s].
     """
@@ -103,22 +103,20 @@ def corners_of(contact: LineContact, steps: LineSteps) -> Floats:
     return corners[: last + 2]
 
 
-@compiled(lambda t: t.real(t.of(Law), t.real, t.real))
+@compiled
 def force_under(law: Law, delta: float, rate: float) -> float:
     """Return the force of a law before any clipping [N]; `delta` [m], `rate` [m/s]."""
     static, loss = force_at(law.addresses[0])(delta, rate, law.speed, law.coefficients)
     return float(static + loss)
 
 
-@compiled(
-    lambda t: t.void(t.of(Law), t.of(LineManner), t.real, t.matrix, t.matrix, t.integer, t.integer)
-)
+@compiled
 def write_part(
     law: Law,
     manner: LineManner,
     length: float,
-    motion: Floats,
-    rows: Floats,
+    motion: Matrix,
+    rows: Matrix,
     first: int,
     steps: int,
 ) -> None:
@@ -165,8 +163,8 @@ def write_part(
         rows[IMPULSE, target] = manner.mass * (manner.gravity * time - stopped)
 
 
-@compiled(lambda t: t.boolean(t.matrix, t.integer, t.integer))
-def is_steep_at_end(rows: Floats, first: int, steps: int) -> bool:
+@compiled
+def is_steep_at_end(rows: Matrix, first: int, steps: int) -> bool:
     """Does the force begin or end a part at zero with a slope? The radius of the contact has an
     infinite one then.
     """
@@ -180,7 +178,7 @@ def is_steep_at_end(rows: Floats, first: int, steps: int) -> bool:
     return False
 
 
-@compiled(lambda t: t.of(NormalPath)(t.of(Law), t.of(LineManner), t.integer))
+@compiled
 def followed_path(law: Law, manner: LineManner, steps: int) -> NormalPath:
     """Return the normal motion of a contact that is followed step by step.
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.drop_records import GAP, GRAVITY, TIME, VELOCITY, FreeFall
 
 
-@compiled(lambda t: t.of(FreeFall)(t.vector, t.real))
-def next_touch(state: Floats, level: float) -> FreeFall:
+@compiled
+def next_touch(state: Vector, level: float) -> FreeFall:
     """Return the flight that a drop is about to make until its gap is at a level [m].
 
     That is zero, or below it in a dent. The speed of touch v follows from v^2 = v0^2 + 2 g h, and

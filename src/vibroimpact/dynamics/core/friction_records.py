@@ -1,6 +1,6 @@
 """What the core computes friction along one direction with, in named tuples.
 
-The annotations name the types of compiled code, in `vibroimpact.compiler.types`. Velocities,
+The annotations name the types of compiled code. Velocities,
 displacements and integrals are those of `contact.friction.law`: over kappa, and I.
 """
 
@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from vibroimpact.arrays import Integers
-from vibroimpact.dynamics.core.records import Boolean, Integer, Matrix, Real
+from vibroimpact.arrays import Integers, Matrix
 
 NO_FRICTION, IMPULSIVE, ELASTIC = range(3)
 """Kinds of friction laws: none; one that follows the normal impulse; one with the tangential
@@ -32,13 +31,13 @@ class Rubbing(NamedTuple):
     depth at release, as a part of the largest.
     """
 
-    kind: Integer
+    kind: int
     addresses: Integers
-    growing: Real
-    shrinking: Real
-    at_rim: Boolean
-    sliding_energy: Real
-    rounding: Real
+    growing: float
+    shrinking: float
+    at_rim: bool
+    sliding_energy: float
+    rounding: float
 
 
 class NormalState(NamedTuple):
@@ -48,13 +47,13 @@ class NormalState(NamedTuple):
     the integral I of a contact that slides [m^1.5]; swept: its integral over time so far.
     """
 
-    time: Real
-    pace: Real
-    pace_slope: Real
-    depth: Real
-    depth_slope: Real
-    most: Real
-    swept: Real
+    time: float
+    pace: float
+    pace_slope: float
+    depth: float
+    depth_slope: float
+    most: float
+    swept: float
 
 
 class SlipState(NamedTuple):
@@ -66,12 +65,12 @@ class SlipState(NamedTuple):
     contact sticks, over mass and the square of kappa [J/kg].
     """
 
-    velocity: Real
-    displacement: Real
-    integral: Real
-    direction: Real
-    front: Real
-    microslip: Real
+    velocity: float
+    displacement: float
+    integral: float
+    direction: float
+    front: float
+    microslip: float
 
 
 class Friction(NamedTuple):
@@ -82,12 +81,12 @@ class Friction(NamedTuple):
     direction [m/s^2].
     """
 
-    growing: Real
-    shrinking: Real
-    at_rim: Boolean
-    sliding_energy: Real
-    stiffness: Real
-    pull: Real
+    growing: float
+    shrinking: float
+    at_rim: bool
+    sliding_energy: float
+    stiffness: float
+    pull: float
 
 
 class Curve(NamedTuple):
@@ -104,7 +103,7 @@ class Curve(NamedTuple):
 class Cubic(NamedTuple):
     """A cubic over a step, by value and slope at its start and at its end."""
 
-    value: Real
-    slope: Real
-    end_value: Real
-    end_slope: Real
+    value: float
+    slope: float
+    end_value: float
+    end_slope: float

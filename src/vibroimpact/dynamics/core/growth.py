@@ -20,8 +20,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.arrays import Floats, Integers
-from vibroimpact.compiled import compiled, compressed_at, force_at, levels_at
+from vibroimpact.arrays import Integers, Vector
+from vibroimpact.compiled import Lent, compiled, compressed_at, force_at, levels_at
 from vibroimpact.dynamics.core.attempt import basis_of, time_at, weights_at
 from vibroimpact.dynamics.core.contact_records import (
     FLIGHT,
@@ -42,7 +42,6 @@ from vibroimpact.dynamics.core.records import (
     Law,
     State,
     System,
-    Vector,
 )
 from vibroimpact.dynamics.core.tangent import propagate
 
@@ -94,18 +93,14 @@ class Recorded(NamedTuple):
     end: State
 
 
-@compiled(
-    lambda t: t.void(
-        t.lent(Bases), t.lent(Bodies), t.lent(Recorded), t.integer, t.lent(Neighbour), t.vector
-    )
-)
+@compiled
 def write_growth(
-    bases: Bases,
-    still: Bodies,
-    recorded: Recorded,
+    bases: Lent[Bases],
+    still: Lent[Bodies],
+    recorded: Lent[Recorded],
     tension: int,
-    neighbour: Neighbour,
-    growth: Floats,
+    neighbour: Lent[Neighbour],
+    growth: Vector,
 ) -> None:
     """Write the growth of a relative change of a drop by each of its impacts [-] (I,).
 
@@ -161,7 +156,7 @@ def write_growth(
         part = end
 
 
-@compiled(lambda t: t.of(State)(t.of(Recorded), t.integer))
+@compiled
 def state_at(recorded: Recorded, part: int) -> State:
     """Return the state at the start of a part, or after the last one."""
     parts = recorded.parts
@@ -170,13 +165,13 @@ def state_at(recorded: Recorded, part: int) -> State:
     return State(parts.displacement[part], parts.velocity[part], parts.local[part])
 
 
-@compiled(lambda t: t.of(State)(t.of(Neighbour)))
+@compiled
 def difference_of(neighbour: Neighbour) -> State:
     """Return the difference of the state."""
     return State(neighbour.displacement, neighbour.velocity, neighbour.local)
 
 
-@compiled(lambda t: t.void(t.of(Neighbour), t.of(State)))
+@compiled
 def put(neighbour: Neighbour, difference: State) -> None:
     """Write a difference of the state to a neighbour."""
     write_all(neighbour.displacement, difference.displacement)
@@ -184,13 +179,13 @@ def put(neighbour: Neighbour, difference: State) -> None:
     write_all(neighbour.local, difference.local)
 
 
-@compiled(lambda t: t.of(Law)(t.of(Recorded), t.vector, t.real))
-def law_with(recorded: Recorded, coefficients: Floats, speed: float) -> Law:
+@compiled
+def law_with(recorded: Recorded, coefficients: Vector, speed: float) -> Law:
     """Return the law with some coefficients, at a closing speed [m/s]."""
     return law_at_touch(recorded.addresses, coefficients, recorded.series, speed)
 
 
-@compiled(lambda t: t.void(t.of(Neighbour), t.of(System), t.of(State), t.real, t.real, t.real))
+@compiled
 def shift(
     neighbour: Neighbour, system: System, state: State, force: float, static: float, delay: float
 ) -> None:
@@ -226,7 +221,7 @@ def shift(
         neighbour.local[element] -= delay * yielding
 
 
-@compiled(lambda t: t.void(t.of(Recorded), t.of(Neighbour), t.real, t.real))
+@compiled
 def shift_to_event(recorded: Recorded, neighbour: Neighbour, excess: float, rate: float) -> None:
     """Shift the difference at the end of the last stretch to the event of each drop.
 
@@ -241,7 +236,7 @@ def shift_to_event(recorded: Recorded, neighbour: Neighbour, excess: float, rate
     shift(neighbour, recorded.system, state, force, parts.static[last, node], -excess / rate)
 
 
-@compiled(lambda t: t.void(t.of(Recorded), t.of(Neighbour)))
+@compiled
 def separate(recorded: Recorded, neighbour: Neighbour) -> None:
     """Shift the difference to the separation of each drop, if they come from a stretch."""
     last = neighbour.numbers[LAST]
@@ -253,7 +248,7 @@ def separate(recorded: Recorded, neighbour: Neighbour) -> None:
     neighbour.numbers[LAST] = _NONE
 
 
-@compiled(lambda t: t.void(t.of(Recorded), t.of(Neighbour), t.integer))
+@compiled
 def fly(recorded: Recorded, neighbour: Neighbour, part: int) -> None:
     """Propagate the difference through a part without contact force."""
     length = recorded.parts.length[part]
@@ -261,17 +256,7 @@ def fly(recorded: Recorded, neighbour: Neighbour, part: int) -> None:
     neighbour.numbers[LAST] = _NONE
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(Bases),
-        t.of(Bodies),
-        t.of(Recorded),
-        t.integer,
-        t.of(Neighbour),
-        t.integer,
-        t.integer,
-    )
-)
+@compiled
 def pass_stretches(
     bases: Bases,
     still: Bodies,
@@ -309,22 +294,18 @@ def pass_stretches(
 # ---------------------------------------------------------------------------------------
 
 
-@compiled(lambda t: t.vector(t.of(Recorded), t.vector, t.real))
-def after_compression(recorded: Recorded, coefficients: Floats, deepest: float) -> Floats:
+@compiled
+def after_compression(recorded: Recorded, coefficients: Vector, deepest: float) -> Vector:
     """Return the coefficients of a law after a compression to an indentation [m]."""
     changed = coefficients.copy()
     compressed_at(recorded.addresses[3])(deepest, coefficients, changed)
     return changed
 
 
-@compiled(
-    lambda t: t.tuple(t.of(Contacts), t.vector)(
-        t.of(Recorded), t.integer, t.of(Neighbour), t.integer
-    )
-)
+@compiled
 def varied_laws(
     recorded: Recorded, tension: int, neighbour: Neighbour, law: int
-) -> tuple[Contacts, Floats]:
+) -> tuple[Contacts, Vector]:
     """Return a law by its number, with its closing speed and its memory varied after it, and by
     what the change of the force of each counts.
     """
@@ -347,7 +328,7 @@ def varied_laws(
     return laws, weights
 
 
-@compiled(lambda t: t.void(t.of(Recorded), t.of(Neighbour), t.integer))
+@compiled
 def touch(recorded: Recorded, neighbour: Neighbour, first: int) -> None:
     """Shift the difference to the touch of each drop; `first`: stretch of the contact.
 
@@ -385,7 +366,7 @@ def touch(recorded: Recorded, neighbour: Neighbour, first: int) -> None:
         neighbour.values[CLOSING_SPEED] = closing
 
 
-@compiled(lambda t: t.void(t.of(Bases), t.of(Recorded), t.of(Neighbour), t.integer))
+@compiled
 def compress(bases: Bases, recorded: Recorded, neighbour: Neighbour, first: int) -> None:
     """Take the change of the law's memory at a turn; `first`: the next stretch.
 
@@ -418,7 +399,7 @@ def compress(bases: Bases, recorded: Recorded, neighbour: Neighbour, first: int)
     neighbour.numbers[LAW] = parts.law[first]
 
 
-@compiled(lambda t: t.void(t.of(Bases), t.of(Recorded), t.of(Neighbour)))
+@compiled
 def turn(bases: Bases, recorded: Recorded, neighbour: Neighbour) -> None:
     """Shift the difference to the turn of the approach of each drop, at the end of a stretch."""
     parts = recorded.parts
@@ -439,7 +420,7 @@ def turn(bases: Bases, recorded: Recorded, neighbour: Neighbour) -> None:
     shift_to_event(recorded, neighbour, excess, acceleration)
 
 
-@compiled(lambda t: t.boolean(t.of(Recorded), t.of(Neighbour), t.integer))
+@compiled
 def force_jumps(recorded: Recorded, neighbour: Neighbour, first: int) -> bool:
     """Does the force jump between the last stretch and the next one?"""
     parts = recorded.parts
@@ -454,7 +435,7 @@ def force_jumps(recorded: Recorded, neighbour: Neighbour, first: int) -> bool:
     return bool(abs(static + dissipative - before) > _JUMP * abs(before))
 
 
-@compiled(lambda t: t.real(t.of(Bases), t.of(Recorded), t.of(Neighbour), t.integer))
+@compiled
 def growth_by_impact(bases: Bases, recorded: Recorded, neighbour: Neighbour, end: int) -> float:
     """Return the growth of a change by an impact [-]; `end`: the part after it."""
     parts = recorded.parts

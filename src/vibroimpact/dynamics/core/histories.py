@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.linear import less_product
 from vibroimpact.dynamics.core.records import (
@@ -20,24 +20,13 @@ from vibroimpact.dynamics.core.records import (
 from vibroimpact.dynamics.core.stretch import begun_rate
 
 
-@compiled(
-    lambda t: t.of(Histories)(
-        t.of(Basis),
-        t.of(Surfaces),
-        t.of(Contacts),
-        t.of(Start),
-        t.vector,
-        t.of(Nodes),
-        t.of(Motion),
-        t.real,
-    )
-)
+@compiled
 def contact_histories(
     basis: Basis,
     surfaces: Surfaces,
     contacts: Contacts,
     start: Start,
-    begun: Floats,
+    begun: Vector,
     found: Nodes,
     motion: Motion,
     length: float,

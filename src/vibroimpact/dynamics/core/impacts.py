@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from vibroimpact.arrays import Floats, Integers
+from vibroimpact.arrays import Integers, Vector
 from vibroimpact.compiled import compiled, force_at, levels_at
 from vibroimpact.dynamics.core.contact import (
     CAPTURED,
@@ -81,7 +81,7 @@ FIRST_LENGTH = 0.125  # of the duration of a contact: length of the first stretc
 _LEAST_SPEED = 1e-300
 
 
-@compiled(lambda t: t.real(t.of(System), t.of(State)))
+@compiled
 def closing_speed(system: System, state: State) -> float:
     """Return the closing speed of the surfaces [m/s], > 0.
 
@@ -92,9 +92,9 @@ def closing_speed(system: System, state: State) -> float:
     return max(dashpot_rate(system, state), rate, _LEAST_SPEED)
 
 
-@compiled(lambda t: t.real(t.integers, t.vector, t.of(System), t.real))
+@compiled
 def motion_speed(
-    addresses: Integers, coefficients: Floats, system: System, closing: float
+    addresses: Integers, coefficients: Vector, system: System, closing: float
 ) -> float:
     """Return the speed scale of the motion in a contact [m/s].
 
@@ -112,11 +112,7 @@ def motion_speed(
     return max(closing, math.sqrt(max(system.gravity * sag, 0.0)))
 
 
-@compiled(
-    lambda t: t.of(Manner)(
-        t.of(System), t.of(ImpactManner), t.of(VibratingDrop), t.of(State), t.of(SlidingSphere)
-    )
-)
+@compiled
 def manner_at_touch(
     system: System,
     manner: ImpactManner,
@@ -154,16 +150,7 @@ def manner_at_touch(
     )
 
 
-@compiled(
-    lambda t: t.of(Now)(
-        t.of(System),
-        t.of(ImpactManner),
-        t.of(VibratingDrop),
-        t.of(Parts),
-        t.of(State),
-        t.of(SlidingSphere),
-    )
-)
+@compiled
 def begin_impact(
     system: System,
     manner: ImpactManner,
@@ -202,21 +189,11 @@ def begin_impact(
     return Now(IN_CONTACT, state, state, law, of_contact, progress, 1)
 
 
-@compiled(
-    lambda t: t.tuple(t.of(Law), t.of(Progress))(
-        t.of(System),
-        t.of(ImpactManner),
-        t.vector,
-        t.real,
-        t.of(State),
-        t.of(Progress),
-        t.of(Parts),
-    )
-)
+@compiled
 def begin_contact(
     system: System,
     manner: ImpactManner,
-    coefficients: Floats,
+    coefficients: Vector,
     span: float,
     state: State,
     progress: Progress,
@@ -262,7 +239,7 @@ def begin_contact(
     return law, begun
 
 
-@compiled(lambda t: t.of(Progress)(t.of(Progress), t.real, t.integer, t.real, t.of(SlidingSphere)))
+@compiled
 def with_law(
     progress: Progress, time: float, law: int, plastic: float, sphere: SlidingSphere
 ) -> Progress:
@@ -288,7 +265,7 @@ def with_law(
     )
 
 
-@compiled(lambda t: t.boolean(t.of(System), t.real, t.of(State), t.real))
+@compiled
 def separates_slower_than(system: System, touch: float, state: State, speed: float) -> bool:
     """Does a sphere apart from the surface lack the energy to reach a separation speed [m/s]?
 
@@ -301,11 +278,7 @@ def separates_slower_than(system: System, touch: float, state: State, speed: flo
     return bool(mechanical_energy(system, state) < least + 0.5 * system.mass * speed * speed)
 
 
-@compiled(
-    lambda t: t.tuple(t.real, t.boolean)(
-        t.of(System), t.of(ImpactManner), t.of(VibratingDrop), t.of(Now)
-    )
-)
+@compiled
 def next_contact(
     system: System, manner: ImpactManner, drop: VibratingDrop, now: Now
 ) -> tuple[float, bool]:
@@ -347,17 +320,7 @@ def next_contact(
     return time, is_same
 
 
-@compiled(
-    lambda t: t.of(Now)(
-        t.of(System),
-        t.of(ImpactManner),
-        t.of(VibratingDrop),
-        t.of(Parts),
-        t.of(Now),
-        t.real,
-        t.boolean,
-    )
-)
+@compiled
 def touch_again(
     system: System,
     manner: ImpactManner,
@@ -414,11 +377,7 @@ def touch_again(
     return Now(IN_CONTACT, state, now.begun, law, of_contact, at_touch, now.contacts + 1)
 
 
-@compiled(
-    lambda t: t.of(Now)(
-        t.of(Bases), t.of(Bodies), t.of(ImpactManner), t.of(VibratingDrop), t.of(Parts), t.of(Now)
-    )
-)
+@compiled
 def follow_impact(
     bases: Bases, bodies: Bodies, manner: ImpactManner, drop: VibratingDrop, parts: Parts, now: Now
 ) -> Now:
@@ -464,17 +423,13 @@ def follow_impact(
         now = touch_again(system, manner, drop, parts, now, time, is_same)
 
 
-@compiled(lambda t: t.of(Now)(t.of(Now), t.integer))
+@compiled
 def in_phase(now: Now, phase: int) -> Now:
     """Return where a drop is, in another phase."""
     return Now(phase, now.state, now.begun, now.law, now.manner, now.progress, now.contacts)
 
 
-@compiled(
-    lambda t: t.of(Now)(
-        t.of(System), t.of(ImpactManner), t.of(VibratingDrop), t.of(Parts), t.of(Now), t.real
-    )
-)
+@compiled
 def settled(
     system: System, manner: ImpactManner, drop: VibratingDrop, parts: Parts, now: Now, touch: float
 ) -> Now:
@@ -494,9 +449,7 @@ def settled(
     return Now(END_BY_REST_SPEED, now.state, now.begun, law, now.manner, progress, now.contacts)
 
 
-@compiled(
-    lambda t: t.of(Now)(t.of(ImpactManner), t.of(VibratingDrop), t.of(Parts), t.of(Now), t.integer)
-)
+@compiled
 def stayed(manner: ImpactManner, drop: VibratingDrop, parts: Parts, now: Now, outcome: int) -> Now:
     """Return where a drop is whose impact ends in contact; `outcome`: of the contact.
 
@@ -521,7 +474,7 @@ def stayed(manner: ImpactManner, drop: VibratingDrop, parts: Parts, now: Now, ou
     return Now(phase, now.state, now.begun, law, now.manner, progress, now.contacts)
 
 
-@compiled(lambda t: t.real(t.of(Now)))
+@compiled
 def energy_in_contact(now: Now) -> float:
     """Return the energy that the contact stores at the end of an impact [J]."""
     if now.phase == IN_FLIGHT or now.phase == END_BY_REST_SPEED:

@@ -7,12 +7,11 @@ in plain Python it is the function.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
-from vibroimpact.arrays import Floats, Integers
-from vibroimpact.compiled import compiled, compressed_at, energies_at, force_at, levels_at
+from vibroimpact.arrays import Integers, Matrix, Vector
+from vibroimpact.compiled import Address, compiled, compressed_at, energies_at, force_at, levels_at
 from vibroimpact.dynamics.core.linear import write_row
 from vibroimpact.dynamics.core.records import (
     FIRST_BREAKPOINT,
@@ -34,8 +33,8 @@ _CONVERGED = 1e-8  # relative Newton step, after which the next would be below r
 _MOST_ITERATIONS = 60
 
 
-@compiled(lambda t: t.tuple(t.real, t.real)(t.vector, t.real))
-def series_indentation(series: Floats, force: float) -> tuple[float, float]:
+@compiled
+def series_indentation(series: Vector, force: float) -> tuple[float, float]:
     """Return the indentation of a compliance in series [m] at a force [N], and its derivative
     [m/N].
 
@@ -56,15 +55,20 @@ def series_indentation(series: Floats, force: float) -> tuple[float, float]:
     return force * (linear + unit * factor), linear + unit * slope
 
 
-@compiled(lambda t: t.boolean(t.vector))
-def is_in_series(series: Floats) -> bool:
+@compiled
+def is_in_series(series: Vector) -> bool:
     """Is there a compliance in series?"""
     return bool(series[0] != 0.0 or series[1] != 0.0)
 
 
-@compiled(lambda t: t.real(t.address, t.vector, t.real, t.real, t.vector, t.real))
+@compiled
 def indentation_at(
-    law: Any, coefficients: Floats, speed: float, release: float, series: Floats, approach: float
+    law: Address,
+    coefficients: Vector,
+    speed: float,
+    release: float,
+    series: Vector,
+    approach: float,
 ) -> float:
     """Return the indentation of a law [m] at an approach of the surfaces [m], at least that of
     release, to 1e-8 of it.
@@ -106,18 +110,16 @@ def indentation_at(
     return delta
 
 
-@compiled(
-    lambda t: t.void(t.address, t.vector, t.real, t.real, t.vector, t.vector, t.vector, t.matrix)
-)
+@compiled
 def linearise(
-    law: Any,
-    coefficients: Floats,
+    law: Address,
+    coefficients: Vector,
     speed: float,
     release: float,
-    series: Floats,
-    delta: Floats,
-    rate: Floats,
-    linear: Floats,
+    series: Vector,
+    delta: Vector,
+    rate: Vector,
+    linear: Matrix,
 ) -> None:
     """Write forces, approach and derivatives of a law at N nodes into `linear` (7, N).
 
@@ -162,8 +164,8 @@ def linearise(
         linear[6, node] = (faster_dissipative - dissipative) / faster
 
 
-@compiled(lambda t: t.real(t.vector, t.real))
-def series_energy(series: Floats, force: float) -> float:
+@compiled
+def series_energy(series: Vector, force: float) -> float:
     """Return the energy of a compliance in series [J] at a force [N]; negative for a
     negative compliance.
     """
@@ -185,14 +187,14 @@ _TENSILE_POINTS = 2000
 _LEAST_SLOPE = 0.05
 
 
-@compiled(lambda t: t.real(t.of(Law), t.real))
+@compiled
 def static_force(law: Law, delta: float) -> float:
     """Return the static force of a law [N] at an indentation [m]."""
     static, _ = force_at(law.addresses[0])(delta, 0.0, law.speed, law.coefficients)
     return float(static)
 
 
-@compiled(lambda t: t.real(t.of(Law), t.real))
+@compiled
 def approach_at(law: Law, delta: float) -> float:
     """Return the approach of the surfaces [m] at an indentation of a law [m]."""
     if not is_in_series(law.series):
@@ -200,7 +202,7 @@ def approach_at(law: Law, delta: float) -> float:
     return delta + series_indentation(law.series, static_force(law, delta))[0]
 
 
-@compiled(lambda t: t.real(t.of(Law), t.real))
+@compiled
 def law_indentation(law: Law, approach: float) -> float:
     """Return the indentation of a law [m] at an approach of the surfaces [m], at least
     that of release.
@@ -210,7 +212,7 @@ def law_indentation(law: Law, approach: float) -> float:
     )
 
 
-@compiled(lambda t: t.real(t.of(Law), t.real))
+@compiled
 def stored_energy(law: Law, delta: float) -> float:
     """Return the energy that a law and the compliance in series store since touch [J], at
     an indentation of the law [m].
@@ -222,7 +224,7 @@ def stored_energy(law: Law, delta: float) -> float:
     return float(elastic)
 
 
-@compiled(lambda t: t.real(t.of(Law), t.real))
+@compiled
 def static_work(law: Law, delta: float) -> float:
     """Return the sum of the stored energy and the plastic work [J] at an indentation of a
     law [m].
@@ -231,7 +233,7 @@ def static_work(law: Law, delta: float) -> float:
     return float(stored_energy(law, delta) + plastic)
 
 
-@compiled(lambda t: t.of(Law)(t.of(Contacts), t.integer))
+@compiled
 def law_of(contacts: Contacts, contact: int) -> Law:
     """Return the law of one of several contacts."""
     return Law(
@@ -249,7 +251,7 @@ def law_of(contacts: Contacts, contact: int) -> Law:
     )
 
 
-@compiled(lambda t: t.of(Contacts)(t.of(Law), t.integer, t.integer))
+@compiled
 def room_for_laws(law: Law, laws: int, tension: int) -> Contacts:
     """Return room for so many laws of the kind of one, with the same `tension`."""
     return Contacts(
@@ -261,7 +263,7 @@ def room_for_laws(law: Law, laws: int, tension: int) -> Contacts:
     )
 
 
-@compiled(lambda t: t.void(t.of(Contacts), t.integer, t.of(Law)))
+@compiled
 def write_law_of(contacts: Contacts, contact: int, law: Law) -> None:
     """Write the law of one of several contacts."""
     for function in range(4):
@@ -279,7 +281,7 @@ def write_law_of(contacts: Contacts, contact: int, law: Law) -> None:
     numbers[JUMP] = law.jump
 
 
-@compiled(lambda t: t.of(Contacts)(t.of(Law), t.integer))
+@compiled
 def contacts_of(law: Law, tension: int) -> Contacts:
     """Return the law of one contact as stretches take it."""
     contacts = room_for_laws(law, 1, tension)
@@ -287,8 +289,8 @@ def contacts_of(law: Law, tension: int) -> Contacts:
     return contacts
 
 
-@compiled(lambda t: t.of(Law)(t.integers, t.vector, t.vector, t.real))
-def law_at_touch(addresses: Integers, coefficients: Floats, series: Floats, speed: float) -> Law:
+@compiled
+def law_at_touch(addresses: Integers, coefficients: Vector, series: Vector, speed: float) -> Law:
     """Return a law of one contact with the levels that follow from its coefficients;
     `speed`: closing speed at touch [m/s].
     """
@@ -296,9 +298,9 @@ def law_at_touch(addresses: Integers, coefficients: Floats, series: Floats, spee
     return law_beyond(addresses, coefficients, series, speed, memory_level)
 
 
-@compiled(lambda t: t.of(Law)(t.integers, t.vector, t.vector, t.real, t.real))
+@compiled
 def law_beyond(
-    addresses: Integers, coefficients: Floats, series: Floats, speed: float, memory_level: float
+    addresses: Integers, coefficients: Vector, series: Vector, speed: float, memory_level: float
 ) -> Law:
     """Return a law of one contact whose memory changes beyond an indentation [m]."""
     touch, release, _, first, second = levels_at(addresses[2])(coefficients)
@@ -352,7 +354,7 @@ def law_beyond(
     )
 
 
-@compiled(lambda t: t.real(t.of(Law)))
+@compiled
 def snap_off(law: Law) -> float:
     """Return the indentation [m] at which a sticking contact with a compliance in series
     snaps off, or that at which its law releases.
@@ -373,7 +375,7 @@ def snap_off(law: Law) -> float:
     return snapped
 
 
-@compiled(lambda t: t.of(Law)(t.of(Law), t.real))
+@compiled
 def law_after(law: Law, deepest: float) -> Law:
     """Return a law with its memory of a compression to an indentation [m]."""
     changed = law.coefficients.copy()
@@ -381,7 +383,7 @@ def law_after(law: Law, deepest: float) -> Law:
     return law_beyond(law.addresses, changed, law.series, law.speed, memory_level)
 
 
-@compiled(lambda t: t.of(Law)(t.of(Law), t.real))
+@compiled
 def law_remembering(law: Law, deepest: float) -> Law:
     """Return a law after a compression to an indentation [m]: itself where that does not
     change its memory.

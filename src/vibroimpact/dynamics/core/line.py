@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.events import ENDS_AT_NO_FORCE, TENSION_CUT
 from vibroimpact.dynamics.core.law import law_remembering
@@ -71,7 +71,7 @@ _STILL = 1e-12  # of the work of the weight
 _TINY = 1e-300
 
 
-@compiled(lambda t: t.real(t.of(Law), t.real, t.boolean, t.real))
+@compiled
 def next_level(law: Law, delta: float, compressing: bool, rounding: float) -> float:
     """Return the next indentation at which the force is not smooth [m], on the way in
     infinite if there is none, on the way out release.
@@ -91,7 +91,7 @@ def next_level(law: Law, delta: float, compressing: bool, rounding: float) -> fl
     return level
 
 
-@compiled(lambda t: t.void(t.of(LineSteps), t.integer, t.boolean, t.of(LineState), t.real))
+@compiled
 def write_step(
     steps: LineSteps, variable: int, after: bool, begun: LineState, length: float
 ) -> None:
@@ -108,7 +108,7 @@ def write_step(
         steps.length[step] = length
 
 
-@compiled(lambda t: t.of(Line)(t.of(Law), t.of(LineManner)))
+@compiled
 def line_under(law: Law, manner: LineManner) -> Line:
     """Return the two bodies under a law, with its memory."""
     depth = manner.depth - law.release
@@ -131,13 +131,9 @@ def line_under(law: Law, manner: LineManner) -> Line:
     )
 
 
-@compiled(
-    lambda t: t.tuple(t.integer, t.real, t.of(Advance))(
-        t.of(Line), t.of(LineState), t.boolean, t.real, t.real, t.matrix
-    )
-)
+@compiled
 def next_step(
-    line: Line, state: LineState, compressing: bool, level: float, length: float, stages: Floats
+    line: Line, state: LineState, compressing: bool, level: float, length: float, stages: Matrix
 ) -> tuple[int, float, Advance]:
     """Return the variable, the length and the end of a step of about a length of the flow.
 
@@ -159,21 +155,7 @@ def next_step(
     return BY_FLOW, length, advance(line, BY_FLOW, state, length, stages)
 
 
-@compiled(
-    lambda t: t.tuple(t.integer, t.real, t.of(LineState))(
-        t.of(Line),
-        t.of(LineManner),
-        t.integer,
-        t.of(LineState),
-        t.boolean,
-        t.real,
-        t.real,
-        t.of(Advance),
-        t.real,
-        t.real,
-        t.matrix,
-    )
-)
+@compiled
 def first_end(
     line: Line,
     manner: LineManner,
@@ -185,7 +167,7 @@ def first_end(
     step: Advance,
     slack: float,
     least_energy: float,
-    stages: Floats,
+    stages: Matrix,
 ) -> tuple[int, float, LineState]:
     """Return what ends a step first, of `line_events`, the length up to there, and the state then.
 
@@ -244,7 +226,7 @@ def first_end(
     return end, length, state
 
 
-@compiled(lambda t: t.tuple(t.boolean, t.real)(t.of(Line), t.of(LineState), t.real))
+@compiled
 def sinks_to(line: Line, state: LineState, least_energy: float) -> tuple[bool, float]:
     """Has a body in compression crept to its static indentation without a turn, and which
     is that [m]?
@@ -262,7 +244,7 @@ def sinks_to(line: Line, state: LineState, least_energy: float) -> tuple[bool, f
     return kinetic < least_energy or left < max(_STILL * weight * sag, least_energy), sag
 
 
-@compiled(lambda t: t.real(t.of(Line), t.of(LineState), t.real))
+@compiled
 def energy_of(line: Line, state: LineState, plastic: float) -> float:
     """Return the energy of the motion, of the law and of the weight, with what was lost
     in damping and in plastic work, `plastic` [J].
@@ -272,7 +254,7 @@ def energy_of(line: Line, state: LineState, plastic: float) -> float:
     return kinetic + elastic + plastic + state.lost - line.mass * line.gravity * state.delta
 
 
-@compiled(lambda t: t.of(LineContact)(t.of(Law), t.of(LineManner), t.of(LineSteps)))
+@compiled
 def follow_line(law: Law, manner: LineManner, steps: LineSteps) -> LineContact:
     """Follow the contact of two rigid bodies from touch until it is released, or captured.
 

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.line_records import Bracket, Line, LineState
 from vibroimpact.dynamics.core.line_step import FREE, advance, energies_of, force_of, force_trend
@@ -28,7 +28,7 @@ _SAMPLES = 32
 _NEAR_PEAK = 1e-8  # of the span
 
 
-@compiled(lambda t: t.real(t.of(Line), t.integer, t.real, t.of(LineState)))
+@compiled
 def distance_to(line: Line, end: int, level: float, state: LineState) -> float:
     """Return how far a state is from an end [m], [m/s], [N] or [J]; `level`: an
     indentation [m], or the least energy to part [J].
@@ -42,7 +42,7 @@ def distance_to(line: Line, end: int, level: float, state: LineState) -> float:
     return energy_to_part(line, state) - level
 
 
-@compiled(lambda t: t.real(t.of(Line), t.of(LineState)))
+@compiled
 def energy_to_part(line: Line, state: LineState) -> float:
     """Return the energy above that with which the bodies would part without speed, if
     nothing more were lost [J].
@@ -59,7 +59,7 @@ def energy_to_part(line: Line, state: LineState) -> float:
     )
 
 
-@compiled(lambda t: t.real(t.of(Bracket)))
+@compiled
 def secant_of(bracket: Bracket) -> float:
     """Return where the secant through the ends of a bracket is zero."""
     return bracket.low + (bracket.high - bracket.low) * bracket.low_value / (
@@ -67,7 +67,7 @@ def secant_of(bracket: Bracket) -> float:
     )
 
 
-@compiled(lambda t: t.of(Bracket)(t.of(Bracket), t.real, t.real))
+@compiled
 def narrowed(bracket: Bracket, middle: float, value: float) -> Bracket:
     """Return a bracket with the value in its middle in place of that at one end.
 
@@ -80,11 +80,7 @@ def narrowed(bracket: Bracket, middle: float, value: float) -> Bracket:
     return Bracket(middle, high, value, high_value * (0.5 if moved == LOW else 1.0), LOW)
 
 
-@compiled(
-    lambda t: t.real(
-        t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.integer, t.real, t.matrix
-    )
-)
+@compiled
 def length_to(
     line: Line,
     variable: int,
@@ -93,7 +89,7 @@ def length_to(
     high: float,
     end: int,
     level: float,
-    stages: Floats,
+    stages: Matrix,
 ) -> float:
     """Return the length of a step to an end between two lengths, by the secant within a bracket."""
     low_value = distance_to(line, end, level, advance(line, variable, begun, low, stages).state)
@@ -117,9 +113,7 @@ def length_to(
     return bracket.low if abs(bracket.low_value) < abs(bracket.high_value) else bracket.high
 
 
-@compiled(
-    lambda t: t.real(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.boolean, t.matrix)
-)
+@compiled
 def length_to_tension(
     line: Line,
     variable: int,
@@ -127,7 +121,7 @@ def length_to_tension(
     length: float,
     slack: float,
     is_seen: bool,
-    stages: Floats,
+    stages: Matrix,
 ) -> float:
     """Return the length of a step to where the force becomes tensile by more than `slack` [N];
     infinite where it does not.
@@ -158,7 +152,7 @@ def length_to_tension(
     return np.inf
 
 
-@compiled(lambda t: t.tuple(t.real, t.boolean, t.boolean)(t.of(Line), t.of(LineState)))
+@compiled
 def end_of_glide(line: Line, begun: LineState) -> tuple[float, bool, bool]:
     """Return how long bodies move freely within the indentation [s], whether the law then pushes,
     and whether they stay within.
@@ -186,7 +180,7 @@ def end_of_glide(line: Line, begun: LineState) -> tuple[float, bool, bool]:
     return length, False, stays
 
 
-@compiled(lambda t: t.of(LineState)(t.of(Line), t.of(LineState), t.real, t.boolean))
+@compiled
 def after_glide(line: Line, begun: LineState, length: float, within: bool) -> LineState:
     """Return the state after free motion for a time [s], `within` the indentation or to
     release; the energy stored meanwhile is lost.
@@ -197,11 +191,7 @@ def after_glide(line: Line, begun: LineState, length: float, within: bool) -> Li
     return LineState(after.time, delta, after.rate, after.lost + lost)
 
 
-@compiled(
-    lambda t: t.tuple(t.real, t.real, t.real)(
-        t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.real, t.matrix
-    )
-)
+@compiled
 def extreme_force(
     line: Line,
     variable: int,
@@ -209,7 +199,7 @@ def extreme_force(
     length: float,
     before: float,
     after: float,
-    stages: Floats,
+    stages: Matrix,
 ) -> tuple[float, float, float]:
     """Return the largest or least force within a step [N], its time since touch [s], and the length
     of the step up to it.

@@ -1,19 +1,16 @@
 """What the core computes the contact of two rigid bodies with.
 
-The annotations name the types of compiled code, in `vibroimpact.compiler.types`.
+The annotations name the types of compiled code.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
-from vibroimpact.arrays import Bools, Integers
+from vibroimpact.arrays import Bools, Integers, Matrix, Vector
+from vibroimpact.compiled import Address
 from vibroimpact.dynamics.core.normal_records import NormalGrid
 from vibroimpact.dynamics.core.phase_records import PhaseRules
-from vibroimpact.dynamics.core.records import Boolean, Integer, Matrix, Real, Vector
-
-Address: TypeAlias = int
-Booleans: TypeAlias = Bools
 
 
 class Line(NamedTuple):
@@ -29,16 +26,16 @@ class Line(NamedTuple):
     force: Address
     energies: Address
     coefficients: Vector
-    speed: Real
-    release: Real
-    root: Integer
-    mass: Real
-    gravity: Real
-    span: Real
-    root_scale: Real
-    speed_scale: Real
-    time_scale: Real
-    energy_scale: Real
+    speed: float
+    release: float
+    root: int
+    mass: float
+    gravity: float
+    span: float
+    root_scale: float
+    speed_scale: float
+    time_scale: float
+    energy_scale: float
 
 
 class LineState(NamedTuple):
@@ -46,10 +43,10 @@ class LineState(NamedTuple):
     [m], its rate [m/s], energy lost in damping [J].
     """
 
-    time: Real
-    delta: Real
-    rate: Real
-    lost: Real
+    time: float
+    delta: float
+    rate: float
+    lost: float
 
 
 class Advance(NamedTuple):
@@ -58,9 +55,9 @@ class Advance(NamedTuple):
     """
 
     state: LineState
-    error: Real
-    least_force: Real
-    force: Real
+    error: float
+    least_force: float
+    force: float
 
 
 class Bracket(NamedTuple):
@@ -68,11 +65,11 @@ class Bracket(NamedTuple):
     end was moved last, of `line_events`.
     """
 
-    low: Real
-    high: Real
-    low_value: Real
-    high_value: Real
-    moved: Integer
+    low: float
+    high: float
+    low_value: float
+    high_value: float
+    moved: int
 
 
 class LineManner(NamedTuple):
@@ -84,15 +81,15 @@ class LineManner(NamedTuple):
     allowed in a step. most_steps: how many steps are tried.
     """
 
-    root: Integer
-    tension: Integer
-    contact_end: Integer
-    mass: Real
-    gravity: Real
-    depth: Real
-    speed_scale: Real
-    tolerance: Real
-    most_steps: Integer
+    root: int
+    tension: int
+    contact_end: int
+    mass: float
+    gravity: float
+    depth: float
+    speed_scale: float
+    tolerance: float
+    most_steps: int
 
 
 class LineSteps(NamedTuple):
@@ -105,7 +102,7 @@ class LineSteps(NamedTuple):
     """
 
     variable: Integers
-    after: Booleans
+    after: Bools
     begun: Matrix
     length: Vector
     written: Integers
@@ -119,14 +116,14 @@ class LineContact(NamedTuple):
     All times are since touch.
     """
 
-    outcome: Integer
+    outcome: int
     end: LineState
-    deepest: Real
-    time_of_deepest: Real
-    peak_force: Real
-    time_of_peak_force: Real
-    plastic: Real
-    stored: Real
+    deepest: float
+    time_of_deepest: float
+    peak_force: float
+    time_of_peak_force: float
+    plastic: float
+    stored: float
 
 
 class LineContacts(NamedTuple):
@@ -152,7 +149,7 @@ class ContactManner(NamedTuple):
     manner: LineManner
     rules: PhaseRules
     grid: NormalGrid
-    collocates: Boolean
+    collocates: bool
     addresses: Integers
 
 

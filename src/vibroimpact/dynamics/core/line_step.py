@@ -22,7 +22,7 @@ import math
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix
 from vibroimpact.compiled import compiled, energies_at, force_at
 from vibroimpact.dynamics.core.dormand_prince import (
     ERROR_OF_ORDER_3,
@@ -42,15 +42,15 @@ _TINY = 1e-300
 _ASIDE = 1e-6  # of the span: step of finite differences
 
 
-@compiled(lambda t: t.real(t.of(Line), t.real))
+@compiled
 def root_of(line: Line, delta: float) -> float:
     """Return the root of the indentation above that of release, in which the force is smooth."""
     above = max(delta - line.release, 0.0)
     return math.sqrt(above) if line.root == 2 else math.sqrt(math.sqrt(above))
 
 
-@compiled(lambda t: t.of(Advance)(t.of(Line), t.integer, t.of(LineState), t.real, t.matrix))
-def advance(line: Line, variable: int, begun: LineState, length: float, stages: Floats) -> Advance:
+@compiled
+def advance(line: Line, variable: int, begun: LineState, length: float, stages: Matrix) -> Advance:
     """Return the state after a step, with an estimate of its error.
 
     Parameters
@@ -139,7 +139,7 @@ def advance(line: Line, variable: int, begun: LineState, length: float, stages: 
     return Advance(after, error, least, whole)
 
 
-@compiled(lambda t: t.real(t.of(Line), t.of(LineState)))
+@compiled
 def force_of(line: Line, state: LineState) -> float:
     """Return the force of the formula of the law [N], which may pull; it ends at the
     indentation of release.
@@ -150,7 +150,7 @@ def force_of(line: Line, state: LineState) -> float:
     return float(static + dissipative)
 
 
-@compiled(lambda t: t.tuple(t.real, t.real)(t.of(Line), t.real))
+@compiled
 def energies_of(line: Line, delta: float) -> tuple[float, float]:
     """Return the energy that the law stores, and the plastic work since its memory [J],
     at an indentation [m].
@@ -159,7 +159,7 @@ def energies_of(line: Line, delta: float) -> tuple[float, float]:
     return elastic, plastic
 
 
-@compiled(lambda t: t.real(t.of(Line), t.of(LineState), t.real))
+@compiled
 def force_trend(line: Line, state: LineState, force: float) -> float:
     """Return the rate of change of the force [N/s]; `force`: its value [N]."""
     function = force_at(line.force)

@@ -33,7 +33,7 @@ _ASIDE = 1e-7  # relative step of finite differences
 _OF_ERROR = 31.0  # one step has 32 times the error of two of half its length
 
 
-@compiled(lambda t: t.of(Advance)(t.of(Line), t.of(LineState), t.real))
+@compiled
 def advance_implicitly(line: Line, begun: LineState, length: float) -> Advance:
     """Return the state after a step of a length of time [s], made in two halves, with an
     estimate of its error.
@@ -50,7 +50,7 @@ def advance_implicitly(line: Line, begun: LineState, length: float) -> Advance:
     return Advance(after.state, error, min(half.least_force, after.least_force), after.force)
 
 
-@compiled(lambda t: t.of(Advance)(t.of(Line), t.of(LineState), t.real))
+@compiled
 def implicit_step(line: Line, begun: LineState, length: float) -> Advance:
     """Return the state after one step; its error is infinite if Newton's method does not
     converge, else zero.

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Cube, Matrix, Vector
 from vibroimpact.compiled import compiled
 
 
-@compiled(lambda t: t.void(t.matrix, t.matrix))
-def solve_in_place(matrix: Floats, right: Floats) -> None:
+@compiled
+def solve_in_place(matrix: Matrix, right: Matrix) -> None:
     """Solve linear equations by elimination with partial pivoting; both arguments are overwritten,
     `right` by the solutions.
 
@@ -65,8 +65,8 @@ def solve_in_place(matrix: Floats, right: Floats) -> None:
             right[row, column] = value * inverse
 
 
-@compiled(lambda t: t.vector(t.vector, t.matrix, t.vector))
-def less_product(values: Floats, matrix: Floats, vector: Floats) -> Floats:
+@compiled
+def less_product(values: Vector, matrix: Matrix, vector: Vector) -> Vector:
     """Return values less the product of a matrix and a vector."""
     left = np.empty(len(values))
     for row in range(len(values)):
@@ -77,8 +77,8 @@ def less_product(values: Floats, matrix: Floats, vector: Floats) -> Floats:
     return left
 
 
-@compiled(lambda t: t.void(t.vector, t.vector))
-def write_all(values: Floats, written: Floats) -> None:
+@compiled
+def write_all(values: Vector, written: Vector) -> None:
     """Write values over all of an array of the same length.
 
     Assignment to a slice takes a second to compile.
@@ -87,23 +87,23 @@ def write_all(values: Floats, written: Floats) -> None:
         values[number] = written[number]
 
 
-@compiled(lambda t: t.void(t.matrix, t.integer, t.vector))
-def write_row(matrix: Floats, row: int, values: Floats) -> None:
+@compiled
+def write_row(matrix: Matrix, row: int, values: Vector) -> None:
     """Write values into the first columns of a row."""
     for column in range(len(values)):
         matrix[row, column] = values[column]
 
 
-@compiled(lambda t: t.void(t.cube, t.integer, t.matrix))
-def write_layer(cube: Floats, layer: int, values: Floats) -> None:
+@compiled
+def write_layer(cube: Cube, layer: int, values: Matrix) -> None:
     """Write the values of a matrix into a layer of a cube."""
     for row in range(values.shape[0]):
         for column in range(values.shape[1]):
             cube[layer, row, column] = values[row, column]
 
 
-@compiled(lambda t: t.real(t.vector))
-def largest_of(values: Floats) -> float:
+@compiled
+def largest_of(values: Vector) -> float:
     """Return the largest value."""
     largest = -np.inf
     for value in values:
@@ -111,8 +111,8 @@ def largest_of(values: Floats) -> float:
     return largest
 
 
-@compiled(lambda t: t.real(t.vector))
-def least_of(values: Floats) -> float:
+@compiled
+def least_of(values: Vector) -> float:
     """Return the least value; NaN if one is."""
     least = np.inf
     for value in values:
@@ -123,8 +123,8 @@ def least_of(values: Floats) -> float:
     return least
 
 
-@compiled(lambda t: t.real(t.vector))
-def largest_magnitude_of(values: Floats) -> float:
+@compiled
+def largest_magnitude_of(values: Vector) -> float:
     """Return the largest magnitude of values; infinite if one is no number."""
     largest = 0.0
     for value in values:
@@ -133,8 +133,8 @@ def largest_magnitude_of(values: Floats) -> float:
     return largest
 
 
-@compiled(lambda t: t.vector(t.matrix, t.vector))
-def product(matrix: Floats, vector: Floats) -> Floats:
+@compiled
+def product(matrix: Matrix, vector: Vector) -> Vector:
     """Return the product of a matrix and a vector."""
     found = np.empty(len(matrix))
     for row in range(len(matrix)):

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix, Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.law import law_at_touch, law_remembering
 from vibroimpact.dynamics.core.line import follow_line, line_under
@@ -30,7 +30,7 @@ _MOST_ITERATIONS = 60
 _NEAR = 4e-16  # of the time since touch
 
 
-@compiled(lambda t: t.of(LineManner)(t.of(LineManner), t.real, t.real, t.real, t.real))
+@compiled
 def with_bodies(
     manner: LineManner, mass: float, gravity: float, depth: float, speed_scale: float
 ) -> LineManner:
@@ -48,7 +48,7 @@ def with_bodies(
     )
 
 
-@compiled(lambda t: t.of(ContactRoom)(t.of(PhaseRules)))
+@compiled
 def room_of(rules: PhaseRules) -> ContactRoom:
     """Return the room in which contacts are solved whose steps are not recorded."""
     steps = LineSteps(
@@ -61,16 +61,7 @@ def room_of(rules: PhaseRules) -> ContactRoom:
     return ContactRoom(np.zeros((ROWS, rules.vectors.shape[2])), steps, np.zeros(7))
 
 
-@compiled(
-    lambda t: t.tuple(t.boolean, t.of(LineContact))(
-        t.of(Law),
-        t.of(LineManner),
-        t.of(PhaseRules),
-        t.of(NormalGrid),
-        t.boolean,
-        t.of(ContactRoom),
-    )
-)
+@compiled
 def solve_pair(
     law: Law,
     bodies: LineManner,
@@ -89,9 +80,9 @@ def solve_pair(
     return False, follow_line(law, bodies, room.steps)
 
 
-@compiled(lambda t: t.void(t.of(ContactManner), t.matrix, t.matrix, t.of(LineContacts)))
+@compiled
 def follow_lines(
-    manner: ContactManner, coefficients: Floats, touches: Floats, contacts: LineContacts
+    manner: ContactManner, coefficients: Matrix, touches: Matrix, contacts: LineContacts
 ) -> None:
     """Solve the contacts of B pairs of rigid bodies, each from touch on: by collocation, or step by
     step where that does not come out.
@@ -130,11 +121,9 @@ def follow_lines(
         ends[9, pair] = contact.stored
 
 
-@compiled(
-    lambda t: t.void(t.of(Law), t.of(LineManner), t.real, t.of(LineSteps), t.vector, t.matrix)
-)
+@compiled
 def read_line(
-    law: Law, manner: LineManner, deepest: float, steps: LineSteps, times: Floats, motion: Floats
+    law: Law, manner: LineManner, deepest: float, steps: LineSteps, times: Vector, motion: Matrix
 ) -> None:
     """Read the motion of a contact at rising times, each as the end of a shorter step.
 
@@ -171,9 +160,9 @@ def read_line(
             )
 
 
-@compiled(lambda t: t.void(t.of(Law), t.of(LineManner), t.real, t.of(LineSteps), t.matrix))
+@compiled
 def time_line(
-    law: Law, manner: LineManner, deepest: float, steps: LineSteps, times: Floats
+    law: Law, manner: LineManner, deepest: float, steps: LineSteps, times: Matrix
 ) -> None:
     """Write the times at which a contact is well resolved [s] (steps, n): at the start of
     n parts of each step.
@@ -191,18 +180,16 @@ def time_line(
             ).state.time
 
 
-@compiled(lambda t: t.of(LineState)(t.of(LineSteps), t.integer))
+@compiled
 def begun_of(steps: LineSteps, number: int) -> LineState:
     """Return the state at the start of a step."""
     begun = steps.begun[number]
     return LineState(begun[0], begun[1], begun[2], begun[3])
 
 
-@compiled(
-    lambda t: t.of(LineState)(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.matrix)
-)
+@compiled
 def state_at(
-    line: Line, variable: int, begun: LineState, length: float, time: float, stages: Floats
+    line: Line, variable: int, begun: LineState, length: float, time: float, stages: Matrix
 ) -> LineState:
     """Return the state at a time within a step [s], by Newton's method within a bracket;
     `length`: of the step.

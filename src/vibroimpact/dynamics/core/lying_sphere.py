@@ -32,7 +32,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix, Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.dormand_prince import (
     ERROR_OF_ORDER_3,
@@ -41,7 +41,6 @@ from vibroimpact.dynamics.core.dormand_prince import (
     STAGES,
 )
 from vibroimpact.dynamics.core.linear import write_row
-from vibroimpact.dynamics.core.records import Real
 from vibroimpact.dynamics.core.sphere_records import (
     RubbedSphere,
     SphereState,
@@ -89,22 +88,22 @@ class LyingSphere(NamedTuple):
     where directions turn [m/s].
     """
 
-    gravity_x: Real
-    gravity_y: Real
-    bound: Real
-    resistance: Real
-    share: Real
-    least: Real
+    gravity_x: float
+    gravity_y: float
+    bound: float
+    resistance: float
+    share: float
+    least: float
 
 
-@compiled(lambda t: t.boolean(t.real, t.real, t.real, t.real))
+@compiled
 def is_across(x: float, y: float, other_x: float, other_y: float) -> bool:
     """Do two vectors lie along different lines?"""
     product = x * other_y - y * other_x
     return abs(product) > _ACROSS * length_of(x, y) * length_of(other_x, other_y)
 
 
-@compiled(lambda t: t.pair(t.real, t.real, t.real, t.real))
+@compiled
 def directed(size: float, x: float, y: float, least: float) -> tuple[float, float]:
     """Return a vector of a size along another one; shorter where that is shorter than `least`, and
     none where it is none.
@@ -115,7 +114,7 @@ def directed(size: float, x: float, y: float, least: float) -> tuple[float, floa
     return size * x / length, size * y / length
 
 
-@compiled(lambda t: t.pair(t.real, t.real, t.real))
+@compiled
 def at_most(size: float, x: float, y: float) -> tuple[float, float]:
     """Return a vector, or one of a size along it if it is longer."""
     length = length_of(x, y)
@@ -124,8 +123,8 @@ def at_most(size: float, x: float, y: float) -> tuple[float, float]:
     return size * x / length, size * y / length
 
 
-@compiled(lambda t: t.void(t.of(LyingSphere), t.vector))
-def write_constant_forces(lying: LyingSphere, row: Floats) -> None:
+@compiled
+def write_constant_forces(lying: LyingSphere, row: Vector) -> None:
     """Write q and u of a part along a line into its row."""
     if row[SLIPS] > 0.0:
         taken_x, taken_y = directed(lying.bound, row[SLIP], row[SLIP + 1], 0.0)
@@ -146,9 +145,9 @@ def write_constant_forces(lying: LyingSphere, row: Floats) -> None:
     row[TURN + 1] = turn_y
 
 
-@compiled(lambda t: t.tuple(t.real, t.real, t.real, t.real)(t.of(LyingSphere), t.vector, t.vector))
+@compiled
 def turning_forces(
-    lying: LyingSphere, row: Floats, state: Floats
+    lying: LyingSphere, row: Vector, state: Vector
 ) -> tuple[float, float, float, float]:
     """Return q and u where directions turn; `state`: place, s and w (6,)."""
     slip_x = state[2]
@@ -166,8 +165,8 @@ def turning_forces(
     return taken_x, taken_y, turn_x, turn_y
 
 
-@compiled(lambda t: t.real(t.of(LyingSphere), t.vector, t.real, t.matrix, t.vector))
-def advance(lying: LyingSphere, row: Floats, length: float, stages: Floats, state: Floats) -> float:
+@compiled
+def advance(lying: LyingSphere, row: Vector, length: float, stages: Matrix, state: Vector) -> float:
     """Write place, s and w (6,) after a step [s] from the begin of a part where directions turn,
     and return the error of s and w over what is allowed.
 
@@ -207,8 +206,8 @@ def advance(lying: LyingSphere, row: Floats, length: float, stages: Floats, stat
     return length * of_order_5 / math.sqrt(4.0 * both)
 
 
-@compiled(lambda t: t.void(t.of(LyingSphere), t.vector, t.real, t.vector))
-def write_along_line(lying: LyingSphere, row: Floats, elapsed: float, state: Floats) -> None:
+@compiled
+def write_along_line(lying: LyingSphere, row: Vector, elapsed: float, state: Vector) -> None:
     """Write place, s, w and q (8,) a time after the begin of a part along a line [s]."""
     rest = 1.0 - lying.share
     for axis in range(2):
@@ -225,9 +224,9 @@ def write_along_line(lying: LyingSphere, row: Floats, elapsed: float, state: Flo
         state[6 + axis] = taken
 
 
-@compiled(lambda t: t.void(t.of(LyingSphere), t.vector, t.real, t.matrix, t.vector))
+@compiled
 def write_within(
-    lying: LyingSphere, row: Floats, elapsed: float, stages: Floats, state: Floats
+    lying: LyingSphere, row: Vector, elapsed: float, stages: Matrix, state: Vector
 ) -> None:
     """Write place, s, w and q (8,) a time after the begin of a part [s]."""
     if row[IS_STRAIGHT] > 0.0:
@@ -237,7 +236,7 @@ def write_within(
     state[6], state[7], _, _ = turning_forces(lying, row, state)
 
 
-@compiled(lambda t: t.real(t.real, t.real, t.real, t.real))
+@compiled
 def time_to_zero(x: float, y: float, rate_x: float, rate_y: float) -> float:
     """Return the time until a vector that shrinks along its line is zero [s], else infinity."""
     length = length_of(x, y)
@@ -247,8 +246,8 @@ def time_to_zero(x: float, y: float, rate_x: float, rate_y: float) -> float:
     return -length / rate if rate < 0.0 else np.inf
 
 
-@compiled(lambda t: t.tuple(t.real, t.boolean, t.boolean)(t.of(LyingSphere), t.vector, t.real))
-def step_along_line(lying: LyingSphere, row: Floats, longest: float) -> tuple[float, bool, bool]:
+@compiled
+def step_along_line(lying: LyingSphere, row: Vector, longest: float) -> tuple[float, bool, bool]:
     """Return the length of a part along a line [s], and whether slip and spin end with it."""
     rest = 1.0 - lying.share
     slip_ends = np.inf
@@ -271,8 +270,8 @@ def step_along_line(lying: LyingSphere, row: Floats, longest: float) -> tuple[fl
     return length, slip_ends <= length, spin_ends <= length
 
 
-@compiled(lambda t: t.tuple(t.real, t.real)(t.of(LyingSphere), t.vector, t.vector))
-def until_events(lying: LyingSphere, row: Floats, state: Floats) -> tuple[float, float]:
+@compiled
+def until_events(lying: LyingSphere, row: Vector, state: Vector) -> tuple[float, float]:
     """Return what falls to zero where the slip ends, or begins, and where the spin ends."""
     slips = length_of(state[2], state[3]) - lying.least
     if row[SLIPS] == 0.0:
@@ -284,13 +283,9 @@ def until_events(lying: LyingSphere, row: Floats, state: Floats) -> tuple[float,
     return slips, turns
 
 
-@compiled(
-    lambda t: t.tuple(t.real, t.boolean, t.boolean)(
-        t.of(LyingSphere), t.vector, t.real, t.matrix, t.vector
-    )
-)
+@compiled
 def step_to_event(
-    lying: LyingSphere, row: Floats, length: float, stages: Floats, state: Floats
+    lying: LyingSphere, row: Vector, length: float, stages: Matrix, state: Vector
 ) -> tuple[float, bool, bool]:
     """Return up to where a step goes that is not beyond an event [s], and whether the slip ends, or
     begins, there, and whether the spin ends.
@@ -316,9 +311,9 @@ def step_to_event(
     return high, changes and slips <= 0.0, settles and turns <= 0.0
 
 
-@compiled(lambda t: t.pair(t.of(LyingSphere), t.vector, t.real, t.matrix, t.vector))
+@compiled
 def adapted_step(
-    lying: LyingSphere, row: Floats, length: float, stages: Floats, state: Floats
+    lying: LyingSphere, row: Vector, length: float, stages: Matrix, state: Vector
 ) -> tuple[float, float]:
     """Write the state after a step whose error is allowed, and return its length and that of the
     next one [s]; `length`: to be tried.
@@ -336,8 +331,8 @@ def adapted_step(
         length *= factor
 
 
-@compiled(lambda t: t.matrix(t.matrix, t.integer))
-def with_room(motion: Floats, parts: int) -> Floats:
+@compiled
+def with_room(motion: Matrix, parts: int) -> Matrix:
     """Return a motion with room for another part."""
     if parts < len(motion):
         return motion
@@ -347,8 +342,8 @@ def with_room(motion: Floats, parts: int) -> Floats:
     return larger
 
 
-@compiled(lambda t: t.boolean(t.of(LyingSphere), t.vector))
-def goes_along_line(lying: LyingSphere, start: Floats) -> bool:
+@compiled
+def goes_along_line(lying: LyingSphere, start: Vector) -> bool:
     """Do slip, spin and gravity of a sphere stay in their directions?
 
     They do not where gravity pulls across the slip, or where the moment acts across one of both.
@@ -364,8 +359,8 @@ def goes_along_line(lying: LyingSphere, start: Floats) -> bool:
     )
 
 
-@compiled(lambda t: t.matrix(t.of(LyingSphere), t.vector, t.real))
-def follow(lying: LyingSphere, start: Floats, until: float) -> Floats:
+@compiled
+def follow(lying: LyingSphere, start: Vector, until: float) -> Matrix:
     """Return the parts of the motion of a sphere up to a time [s]; see `COLUMNS`.
 
     `start`: place, s and w (6,).
@@ -440,8 +435,8 @@ def follow(lying: LyingSphere, start: Floats, until: float) -> Floats:
             row[TURNING + 1] = 0.0
 
 
-@compiled(lambda t: t.of(LyingSphere)(t.of(RubbedSphere), t.real, t.vector))
-def lying_sphere(sphere: RubbedSphere, pressing: float, start: Floats) -> LyingSphere:
+@compiled
+def lying_sphere(sphere: RubbedSphere, pressing: float, start: Vector) -> LyingSphere:
     """Return what acts on a sphere.
 
     `pressing`: gravity along the normal [m/s^2]. `start`: place, s and w (6,).
@@ -461,8 +456,8 @@ def lying_sphere(sphere: RubbedSphere, pressing: float, start: Floats) -> LyingS
     )
 
 
-@compiled(lambda t: t.vector(t.of(RubbedSphere), t.of(SphereState)))
-def start_of(sphere: RubbedSphere, state: SphereState) -> Floats:
+@compiled
+def start_of(sphere: RubbedSphere, state: SphereState) -> Vector:
     """Return place, s and w of a sphere (6,)."""
     turning_x, turning_y = turning_of(sphere, state)
     start = np.empty(6)
@@ -479,8 +474,8 @@ def start_of(sphere: RubbedSphere, state: SphereState) -> Floats:
     return start
 
 
-@compiled(lambda t: t.integer(t.matrix, t.real))
-def part_at(motion: Floats, time: float) -> int:
+@compiled
+def part_at(motion: Matrix, time: float) -> int:
     """Return the number of the last part that has begun at a time [s]; the first column of `motion`
     has their begins.
     """
@@ -495,9 +490,9 @@ def part_at(motion: Floats, time: float) -> int:
     return low
 
 
-@compiled(lambda t: t.real(t.of(LyingSphere), t.vector, t.real, t.integer, t.matrix, t.vector))
+@compiled
 def time_of_turn(
-    lying: LyingSphere, row: Floats, length: float, axis: int, stages: Floats, state: Floats
+    lying: LyingSphere, row: Vector, length: float, axis: int, stages: Matrix, state: Vector
 ) -> float:
     """Return the time after the begin of a part at which the centre turns back along an axis, or
     the length of the part [s].
@@ -522,14 +517,14 @@ def time_of_turn(
     return turn
 
 
-@compiled(lambda t: t.boolean(t.vector, t.pair))
-def is_beside(state: Floats, half: tuple[float, float]) -> bool:
+@compiled
+def is_beside(state: Vector, half: tuple[float, float]) -> bool:
     """Is the centre beside the plate?"""
     return bool(abs(state[0]) > half[0] or abs(state[1]) > half[1])
 
 
-@compiled(lambda t: t.real(t.of(LyingSphere), t.matrix, t.real, t.pair))
-def edge_time(lying: LyingSphere, motion: Floats, until: float, half: tuple[float, float]) -> float:
+@compiled
+def edge_time(lying: LyingSphere, motion: Matrix, until: float, half: tuple[float, float]) -> float:
     """Return the time at which a sphere leaves the plate, as its centre first is beyond an edge
     [s]; else its last time.
 

@@ -24,7 +24,7 @@ _EASY = 0.01  # target roughness of the next stretch, relative to the root of th
 _TINY = 1e-300
 
 
-@compiled(lambda t: t.real(t.real, t.real, t.integer))
+@compiled
 def length_growth(roughness: float, tolerance: float, nodes: int) -> float:
     """Return the ratio of the lengths of the next stretch and one of some roughness, 0.7 to 4.
 
@@ -35,11 +35,7 @@ def length_growth(roughness: float, tolerance: float, nodes: int) -> float:
     return float(min(max(ratio, 0.7), 4.0))
 
 
-@compiled(
-    lambda t: t.of(NextStretch)(
-        t.of(Bases), t.of(Bodies), t.of(Manner), t.of(Beginning), t.integer, t.real, t.real
-    )
-)
+@compiled
 def next_stretch(
     bases: Bases,
     bodies: Bodies,
@@ -74,7 +70,7 @@ def next_stretch(
     return NextStretch(False, tried, balance, time_map, no_event, event_time)
 
 
-@compiled(lambda t: t.of(StretchEnd)(t.of(Bases), t.of(NextStretch)))
+@compiled
 def end_of(bases: Bases, stretch: NextStretch) -> StretchEnd:
     """Return the end of a stretch."""
     tried = stretch.tried

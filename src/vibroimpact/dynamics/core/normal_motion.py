@@ -6,7 +6,7 @@ slowly at its ends, so that the depth of the contact grows with its square.
 
 from __future__ import annotations
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix
 from vibroimpact.compiled import compiled, multiply_row
 from vibroimpact.dynamics.core.normal_records import (
     FORCE,
@@ -52,13 +52,13 @@ _SMALL = 1e-4  # of an impulse: error at the nodes
 _TINY = 1e-300  # so that a node has a distance from itself
 
 
-@compiled(lambda t: t.real(t.real))
+@compiled
 def graded(share: float) -> float:
     """Return y at a share of the steps of a segment."""
     return share * (1.0 + _COARSER * (1.0 - share))
 
 
-@compiled(lambda t: t.void(t.of(NormalGrid), t.integer))
+@compiled
 def note_part(grid: NormalGrid, steps: int) -> None:
     """Note that a part of a contact has been written."""
     first = grid.points[0]
@@ -69,14 +69,14 @@ def note_part(grid: NormalGrid, steps: int) -> None:
     grid.points[0] = first + steps + 1
 
 
-@compiled(lambda t: t.of(NormalPath)(t.of(NormalGrid)))
+@compiled
 def written_path(grid: NormalGrid) -> NormalPath:
     """Return the normal motion that has been written."""
     points = grid.points[0]
     return NormalPath(grid.motion[:, :points].copy(), grid.parameter[: points - 1].copy())
 
 
-@compiled(lambda t: t.boolean(t.of(NormalGrid), t.integer, t.integer))
+@compiled
 def is_steep(grid: NormalGrid, rule: int, count: int) -> bool:
     """Return whether the force of a segment pulls at an end of it, or begins or ends there with a
     slope.
@@ -100,9 +100,7 @@ def is_steep(grid: NormalGrid, rule: int, count: int) -> bool:
     return False
 
 
-@compiled(
-    lambda t: t.void(t.of(NormalGrid), t.of(PhaseRules), t.integer, t.integer, t.integer, t.real)
-)
+@compiled
 def write_own(
     grid: NormalGrid, rules: PhaseRules, vector: int, count: int, steps: int, end: float
 ) -> None:
@@ -129,11 +127,7 @@ def write_own(
                 own[matrix, node, point] = 0.0
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(NormalGrid), t.of(PhaseRules), t.of(Segment), t.of(Phase), t.real, t.real, t.matrix
-    )
-)
+@compiled
 def write_segment(
     grid: NormalGrid,
     rules: PhaseRules,
@@ -141,7 +135,7 @@ def write_segment(
     phase: Phase,
     end: float,
     stopped: float,
-    solved: Floats,
+    solved: Matrix,
 ) -> None:
     """Write the normal motion in a segment of a phase.
 
@@ -228,7 +222,7 @@ def write_segment(
     note_part(grid, steps)
 
 
-@compiled(lambda t: t.void(t.of(NormalGrid), t.real))
+@compiled
 def write_glide(grid: NormalGrid, duration: float) -> None:
     """Write a motion without a force, after a segment, for a time [s]."""
     motion = grid.motion

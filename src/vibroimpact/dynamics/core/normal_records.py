@@ -1,14 +1,13 @@
 """What the core writes the normal motion of a contact with, which drives its friction.
 
-The annotations name the types of compiled code, in `vibroimpact.compiler.types`.
+The annotations name the types of compiled code.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-from vibroimpact.arrays import Integers
-from vibroimpact.dynamics.core.records import Cube, Integer, Matrix, Vector
+from vibroimpact.arrays import Cube, Integers, Matrix, Vector
 
 MORE_STEPS = 3
 """Times as many steps where the force is steep."""
@@ -56,7 +55,7 @@ class NormalGrid(NamedTuple):
     parameter. points (1,): number of its points.
     """
 
-    steps: Integer
+    steps: int
     derivatives: Cube
     values: Cube
     integrals: Cube

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.drop_records import (
     ALONG,
@@ -71,7 +71,7 @@ from vibroimpact.dynamics.core.sphere_records import (
 _DEGREES = 180.0 / math.pi
 
 
-@compiled(lambda t: t.void(t.of(DropManner), t.of(Drops), t.of(ObliqueDrops), t.integer))
+@compiled
 def follow_oblique_drops(
     manner: DropManner, drops: Drops, oblique: ObliqueDrops, pause: int
 ) -> None:
@@ -130,7 +130,7 @@ def follow_oblique_drops(
         drops.impacts[drop] = impacts
 
 
-@compiled(lambda t: t.of(FreeFall)(t.of(ObliqueDrops), t.integer, t.of(FreeFall)))
+@compiled
 def over_plate(oblique: ObliqueDrops, drop: int, flight: FreeFall) -> FreeFall:
     """Return a flight that knows whether it ends beside the plate."""
     if flight.touch == math.inf:
@@ -141,15 +141,15 @@ def over_plate(oblique: ObliqueDrops, drop: int, flight: FreeFall) -> FreeFall:
     return FreeFall(flight.start, flight.top, flight.touch, flight.speed, is_beside)
 
 
-@compiled(lambda t: t.void(t.of(ObliqueDrops), t.integer, t.real))
+@compiled
 def fly_along(oblique: ObliqueDrops, drop: int, elapsed: float) -> None:
     """Move a drop along the plate through a time without contact [s]."""
     along = oblique.along[drop]
     write_state(along, flown(sphere_of(oblique.spheres[drop]), state_of(along), elapsed))
 
 
-@compiled(lambda t: t.of(SphereState)(t.of(ObliqueDrops), t.integer, t.vector, t.vector))
-def struck_end(oblique: ObliqueDrops, drop: int, state: Floats, row: Floats) -> SphereState:
+@compiled
+def struck_end(oblique: ObliqueDrops, drop: int, state: Vector, row: Vector) -> SphereState:
     """Return the state along the plate after an impact without duration.
 
     `state`, `row`: of the drop, and of the impact.
@@ -163,17 +163,7 @@ def struck_end(oblique: ObliqueDrops, drop: int, state: Floats, row: Floats) -> 
     return struck(rubbing.addresses, oblique.friction[drop], sphere, begun, impulse)
 
 
-@compiled(
-    lambda t: t.of(Rubbed)(
-        t.of(ObliqueDrops),
-        t.integer,
-        t.boolean,
-        t.of(Law),
-        t.of(LineManner),
-        t.of(NormalGrid),
-        t.vector,
-    )
-)
+@compiled
 def rubbed_end(
     oblique: ObliqueDrops,
     drop: int,
@@ -181,7 +171,7 @@ def rubbed_end(
     law: Law,
     bodies: LineManner,
     grid: NormalGrid,
-    row: Floats,
+    row: Vector,
 ) -> Rubbed:
     """Return the end of a contact along the plate.
 
@@ -206,9 +196,9 @@ def rubbed_end(
     return rub(oblique.rubbing, oblique.friction[drop], sphere, begun, normal)
 
 
-@compiled(lambda t: t.void(t.of(ObliqueDrops), t.integer, t.of(SphereState), t.real, t.vector))
+@compiled
 def end_along(
-    oblique: ObliqueDrops, drop: int, after: SphereState, microslip: float, row: Floats
+    oblique: ObliqueDrops, drop: int, after: SphereState, microslip: float, row: Vector
 ) -> None:
     """Put a drop into its state after an impact, and write the columns of its motion along the
     plate.
@@ -247,8 +237,8 @@ def end_along(
     row[RELEASE_Y] = after.y
 
 
-@compiled(lambda t: t.boolean(t.of(ObliqueDrops), t.integer, t.real, t.vector))
-def leaves_dent(oblique: ObliqueDrops, drop: int, deepest: float, state: Floats) -> bool:
+@compiled
+def leaves_dent(oblique: ObliqueDrops, drop: int, deepest: float, state: Vector) -> bool:
     """Does a drop touch next beyond the radius of its last contact?
 
     `deepest`: indentation of that [m]. `state`: of the drop after it.

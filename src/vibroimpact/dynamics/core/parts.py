@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.attempt import basis_of
 from vibroimpact.dynamics.core.contact_records import (
@@ -30,7 +30,7 @@ from vibroimpact.dynamics.core.surface_friction_records import (
 )
 
 
-@compiled(lambda t: t.boolean(t.of(Parts)))
+@compiled
 def has_room(parts: Parts) -> bool:
     """Is there room for what is written before this is asked again?
 
@@ -43,7 +43,7 @@ def has_room(parts: Parts) -> bool:
     )
 
 
-@compiled(lambda t: t.integer(t.of(Parts), t.integer, t.real, t.of(Law)))
+@compiled
 def write_law(parts: Parts, origin: int, compressed: float, law: Law) -> int:
     """Write a law, and return its number; `origin`, `compressed`: the columns of `Parts`."""
     number = parts.written[LAWS]
@@ -55,7 +55,7 @@ def write_law(parts: Parts, origin: int, compressed: float, law: Law) -> int:
     return int(number)
 
 
-@compiled(lambda t: t.void(t.of(Parts), t.integer, t.real, t.real, t.of(State), t.integer))
+@compiled
 def write_free(
     parts: Parts, kind: int, start: float, length: float, state: State, law: int
 ) -> None:
@@ -70,7 +70,7 @@ def write_free(
     parts.written[PARTS] = part + 1
 
 
-@compiled(lambda t: t.void(t.of(Parts), t.integer, t.real, t.of(State), t.integer))
+@compiled
 def write_part(parts: Parts, part: int, start: float, state: State, law: int) -> None:
     """Write what all parts of a motion have: their start [s], the state then, and the number of
     their law.
@@ -83,25 +83,21 @@ def write_part(parts: Parts, part: int, start: float, state: State, law: int) ->
     parts.separation_loss[part] = 0.0
 
 
-@compiled(lambda t: t.void(t.of(Parts), t.vector, t.real))
-def lose_at_end(parts: Parts, lost: Floats, energy: float) -> None:
+@compiled
+def lose_at_end(parts: Parts, lost: Vector, energy: float) -> None:
     """Add stored energy that is lost at the end of the last part [J]."""
     lost[len(lost) - 1] += energy
     parts.separation_loss[parts.written[PARTS] - 1] += energy
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(Parts), t.of(Bases), t.of(System), t.of(NextStretch), t.of(Begun), t.vector
-    )
-)
+@compiled
 def write_next(
     parts: Parts,
     bases: Bases,
     system: System,
     stretch: NextStretch,
     begun: Begun,
-    lost: Floats,
+    lost: Vector,
 ) -> None:
     """Write a stretch that is accepted, and add what is lost in it [J] to `lost` (n +
     1,): by each coordinate, and last in the contact.
@@ -125,11 +121,7 @@ def write_next(
     parts.written[PARTS] = part + 1
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(Parts), t.integer, t.of(Basis), t.of(System), t.of(Attempt), t.of(Balance), t.of(State)
-    )
-)
+@compiled
 def write_stretch(
     parts: Parts,
     part: int,
@@ -166,7 +158,7 @@ def write_stretch(
         parts.indentation[part, node + 1] = depth + solved.length * moved
 
 
-@compiled(lambda t: t.void(t.of(Parts), t.integer, t.of(SlidingSphere), t.of(SlidingPart)))
+@compiled
 def write_sliding(parts: Parts, part: int, begun: SlidingSphere, sliding: SlidingPart) -> None:
     """Write what friction does through a stretch that begins in a state."""
     if begun.directions == 0:
@@ -177,8 +169,8 @@ def write_sliding(parts: Parts, part: int, begun: SlidingSphere, sliding: Slidin
     write_surface_friction(sliding.end, parts.sphere[part, 1])
 
 
-@compiled(lambda t: t.void(t.of(SlidingSphere), t.vector))
-def write_surface_friction(sphere: SlidingSphere, numbers: Floats) -> None:
+@compiled
+def write_surface_friction(sphere: SlidingSphere, numbers: Vector) -> None:
     """Write the numbers of `surface_friction_records` that change through a contact."""
     for direction in range(2):
         numbers[VELOCITY_X + direction] = sphere.velocity[direction]

@@ -6,20 +6,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix, Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.receptance import add_at_nodes, to_eigenbasis
 from vibroimpact.dynamics.core.records import Basis, Coordinates, Path, State, Surfaces
 
 
-@compiled(lambda t: t.void(t.of(Surfaces), t.vector, t.vector, t.complex, t.complex, t.matrix))
+@compiled
 def write_springs(
     surfaces: Surfaces,
-    displacement: Floats,
-    velocity: Floats,
+    displacement: Vector,
+    velocity: Vector,
     one: complex,
     clock: complex,
-    of_modes: Floats,
+    of_modes: Matrix,
 ) -> None:
     """Write the accelerations by the springs and dampers of all modes at the start, going
     on at the speeds then, into `of_modes` (2, m).
@@ -32,8 +32,8 @@ def write_springs(
         of_modes[1, mode] = spring * one.imag + spring_rate * clock.imag
 
 
-@compiled(lambda t: t.void(t.vector, t.complex, t.matrix))
-def add_product(shapes: Floats, factor: complex, of_modes: Floats) -> None:
+@compiled
+def add_product(shapes: Vector, factor: complex, of_modes: Matrix) -> None:
     """Add the product of real numbers of all modes (m,) and a complex one to `of_modes`,
     real and imaginary parts (2, m).
     """
@@ -42,9 +42,9 @@ def add_product(shapes: Floats, factor: complex, of_modes: Floats) -> None:
         of_modes[1, mode] += shapes[mode] * factor.imag
 
 
-@compiled(lambda t: t.void(t.of(Surfaces), t.real, t.real, t.matrix))
+@compiled
 def divide_by_impedances(
-    surfaces: Surfaces, sigma: float, sigma_imaginary: float, of_modes: Floats
+    surfaces: Surfaces, sigma: float, sigma_imaginary: float, of_modes: Matrix
 ) -> None:
     """Divide real and imaginary parts of all modes (2, m) by 1 + d sigma + w^2 sigma^2."""
     square = sigma * sigma - sigma_imaginary * sigma_imaginary
@@ -62,33 +62,22 @@ def divide_by_impedances(
         of_modes[1, mode] = (imaginary * impedance - real * impedance_imaginary) * inverse
 
 
-@compiled(lambda t: t.void(t.real, t.real, t.matrix, t.vector))
-def subtract_real_part(real: float, imaginary: float, of_modes: Floats, values: Floats) -> None:
+@compiled
+def subtract_real_part(real: float, imaginary: float, of_modes: Matrix, values: Vector) -> None:
     """Subtract what coefficients in the eigenbasis (2, m) are at a node from `values` (m,)."""
     for mode in range(len(values)):
         values[mode] -= real * of_modes[0, mode] + imaginary * of_modes[1, mode]
 
 
-@compiled(
-    lambda t: t.of(Path)(
-        t.of(Basis),
-        t.of(Surfaces),
-        t.of(Coordinates),
-        t.of(State),
-        t.real,
-        t.vector,
-        t.vector,
-        t.boolean,
-    )
-)
+@compiled
 def stretch_path(
     basis: Basis,
     surfaces: Surfaces,
     coordinates: Coordinates,
     start: State,
     length: float,
-    force: Floats,
-    static: Floats,
+    force: Vector,
+    static: Vector,
     accelerated: bool,
 ) -> Path:
     """Return the motion of all coordinates through a stretch.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Vector
 from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.records import Basis, Law
 
@@ -12,8 +12,8 @@ _POINTS = 33
 _ROUNDS = 3  # each narrows the search to a sixteenth
 
 
-@compiled(lambda t: t.tuple(t.real, t.real)(t.of(Basis), t.vector, t.vector, t.real))
-def values_between(basis: Basis, values: Floats, others: Floats, x: float) -> tuple[float, float]:
+@compiled
+def values_between(basis: Basis, values: Vector, others: Vector, x: float) -> tuple[float, float]:
     """Return the values at x in [0, 1] of two quantities with values at the start and the
     nodes (N + 1,).
     """
@@ -31,8 +31,8 @@ def values_between(basis: Basis, values: Floats, others: Floats, x: float) -> tu
     return value / total, other / total
 
 
-@compiled(lambda t: t.real(t.of(Basis), t.vector, t.real))
-def nodal_value_between(basis: Basis, values: Floats, x: float) -> float:
+@compiled
+def nodal_value_between(basis: Basis, values: Vector, x: float) -> float:
     """Return the value at x in [0, 1] of a quantity with values at the nodes alone (N,)."""
     total = 0.0
     value = 0.0
@@ -47,8 +47,8 @@ def nodal_value_between(basis: Basis, values: Floats, x: float) -> float:
     return value / total
 
 
-@compiled(lambda t: t.real(t.of(Basis), t.of(Law), t.vector, t.vector, t.real))
-def force_between(basis: Basis, law: Law, delta: Floats, rate: Floats, x: float) -> float:
+@compiled
+def force_between(basis: Basis, law: Law, delta: Vector, rate: Vector, x: float) -> float:
     """Return the force of a law [N] at x in [0, 1], from its indentation and its rate at
     the start and the nodes (N + 1,).
     """
@@ -59,8 +59,8 @@ def force_between(basis: Basis, law: Law, delta: Floats, rate: Floats, x: float)
     return float(static + dissipative)
 
 
-@compiled(lambda t: t.tuple(t.real, t.real)(t.of(Basis), t.vector))
-def peak_of(basis: Basis, values: Floats) -> tuple[float, float]:
+@compiled
+def peak_of(basis: Basis, values: Vector) -> tuple[float, float]:
     """Return the x in [0, 1] at which a quantity with values at the start and the nodes
     (N + 1,) is largest, and how large.
     """
@@ -77,8 +77,8 @@ def peak_of(basis: Basis, values: Floats) -> tuple[float, float]:
     return x, values_between(basis, values, values, x)[0]
 
 
-@compiled(lambda t: t.tuple(t.real, t.real)(t.of(Basis), t.of(Law), t.vector, t.vector))
-def peak_of_force(basis: Basis, law: Law, delta: Floats, rate: Floats) -> tuple[float, float]:
+@compiled
+def peak_of_force(basis: Basis, law: Law, delta: Vector, rate: Vector) -> tuple[float, float]:
     """Return the x in [0, 1] at which the force of `force_between` is largest, and that
     force [N].
     """
@@ -95,8 +95,8 @@ def peak_of_force(basis: Basis, law: Law, delta: Floats, rate: Floats) -> tuple[
     return x, force_between(basis, law, delta, rate, x)
 
 
-@compiled(lambda t: t.tuple(t.real, t.real, t.real)(t.vector, t.real, t.real))
-def narrowed(sampled: Floats, low: float, high: float) -> tuple[float, float, float]:
+@compiled
+def narrowed(sampled: Vector, low: float, high: float) -> tuple[float, float, float]:
     """Return about where values at evenly spaced points of an interval are largest, and the two
     points around.
 

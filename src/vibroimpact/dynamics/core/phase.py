@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import math
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix
 from vibroimpact.compiled import compiled, energies_at, force_at, multiply_row
 from vibroimpact.dynamics.core.line_records import Line
 from vibroimpact.dynamics.core.phase_records import (
@@ -66,13 +66,9 @@ _LEAST_OF_BEFORE = 0.1  # of u, in one sweep
 _OF_WORK = 0.05  # of the tolerance: error of the static work
 
 
-@compiled(
-    lambda t: t.tuple(t.real, t.real, t.real, t.real)(
-        t.of(Line), t.of(PhaseRules), t.of(Segment), t.matrix
-    )
-)
+@compiled
 def start_phase(
-    line: Line, rules: PhaseRules, segment: Segment, room: Floats
+    line: Line, rules: PhaseRules, segment: Segment, room: Matrix
 ) -> tuple[float, float, float, float]:
     r"""Write starting values of u, and return the length [m], the powers of the indentation with
     which both forces grow, and the potential at the shallow end [J].
@@ -131,11 +127,9 @@ def start_phase(
     return span, static_power, loss_power, low
 
 
-@compiled(
-    lambda t: t.of(Phase)(t.of(Line), t.of(PhaseRules), t.of(Segment), t.real, t.real, t.matrix)
-)
+@compiled
 def solve_phase(
-    line: Line, rules: PhaseRules, segment: Segment, roughness: float, sharper: float, room: Floats
+    line: Line, rules: PhaseRules, segment: Segment, roughness: float, sharper: float, room: Matrix
 ) -> Phase:
     r"""Solve a segment of a phase by Newton's method, with more nodes until it is resolved.
 

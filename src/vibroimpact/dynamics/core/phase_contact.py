@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Cube, Matrix
 from vibroimpact.compiled import compiled, energies_at, force_at, multiply_row
 from vibroimpact.dynamics.core.events import ENDS_AT_NO_FORCE, TENSION_CUT
 from vibroimpact.dynamics.core.law import law_remembering
@@ -63,15 +63,15 @@ _TINY = 1e-300  # so that a node has a distance from itself
 _NO_FORCE = 1e-11  # of the largest force
 
 
-@compiled(lambda t: t.real(t.of(Line), t.real))
+@compiled
 def potential_of(line: Line, delta: float) -> float:
     """Return the static work of a law and of the weight [J] at an indentation [m]."""
     elastic, plastic = energies_at(line.energies)(delta, line.coefficients)
     return float(elastic + plastic - line.mass * line.gravity * delta)
 
 
-@compiled(lambda t: t.void(t.cube, t.integer, t.integer, t.real, t.matrix))
-def weigh(vectors: Floats, vector: int, count: int, y: float, room: Floats) -> None:
+@compiled
+def weigh(vectors: Cube, vector: int, count: int, y: float, room: Matrix) -> None:
     """Write the weights of the nodes and the far end in the value of a polynomial at y."""
     width = (count + 8) // 8 * 8
     for node in range(width):
@@ -88,8 +88,8 @@ def weigh(vectors: Floats, vector: int, count: int, y: float, room: Floats) -> N
         room[SHARE, node] *= whole
 
 
-@compiled(lambda t: t.real(t.integer, t.integer, t.matrix))
-def weighed(count: int, values: int, room: Floats) -> float:
+@compiled
+def weighed(count: int, values: int, room: Matrix) -> float:
     """Return the value of a polynomial where `weigh` has been called, from the row of its
     values in the room.
     """
@@ -101,9 +101,9 @@ def weighed(count: int, values: int, room: Floats) -> float:
     return even + odd
 
 
-@compiled(lambda t: t.of(LineState)(t.of(PhaseRules), t.of(Segment), t.of(Phase), t.real, t.matrix))
+@compiled
 def state_in(
-    rules: PhaseRules, segment: Segment, phase: Phase, y: float, room: Floats
+    rules: PhaseRules, segment: Segment, phase: Phase, y: float, room: Matrix
 ) -> LineState:
     """Return the state at y in a segment, with no time and no loss."""
     kind = segment.kind
@@ -118,9 +118,9 @@ def state_in(
     return LineState(0.0, delta, segment.sign * factor * math.sqrt(square), 0.0)
 
 
-@compiled(lambda t: t.real(t.cube, t.cube, t.integer, t.integer, t.real, t.matrix))
+@compiled
 def elapsed_at(
-    vectors: Floats, matrices: Floats, vector: int, count: int, y: float, room: Floats
+    vectors: Cube, matrices: Cube, vector: int, count: int, y: float, room: Matrix
 ) -> float:
     """Return the integral of the pace up to y [s], from the end of a segment where the
     motion is known.
@@ -133,13 +133,9 @@ def elapsed_at(
     return weighed(count, ELAPSED, room)
 
 
-@compiled(
-    lambda t: t.tuple(t.real, t.real)(
-        t.of(Line), t.of(PhaseRules), t.of(Segment), t.of(Phase), t.matrix
-    )
-)
+@compiled
 def peak_in(
-    line: Line, rules: PhaseRules, segment: Segment, phase: Phase, room: Floats
+    line: Line, rules: PhaseRules, segment: Segment, phase: Phase, room: Matrix
 ) -> tuple[float, float]:
     """Return the largest force within a segment of compression [N], and its time since the start of
     that [s]; none if at an end of it.
@@ -244,13 +240,9 @@ def peak_in(
     return highest, when
 
 
-@compiled(
-    lambda t: t.tuple(t.boolean, t.real)(
-        t.of(Line), t.of(PhaseRules), t.of(Segment), t.of(Phase), t.boolean, t.matrix
-    )
-)
+@compiled
 def tension_in(
-    line: Line, rules: PhaseRules, segment: Segment, phase: Phase, is_last: bool, room: Floats
+    line: Line, rules: PhaseRules, segment: Segment, phase: Phase, is_last: bool, room: Matrix
 ) -> tuple[bool, float]:
     """Return whether it is certain where the force of a segment of restitution first pulls, and
     that y; infinite if it does not.
@@ -305,13 +297,9 @@ def tension_in(
     return True, math.inf
 
 
-@compiled(
-    lambda t: t.tuple(t.boolean, t.of(LineContact))(
-        t.of(Law), t.of(LineManner), t.of(PhaseRules), t.of(NormalGrid), t.matrix
-    )
-)
+@compiled
 def collocate_contact(
-    law: Law, manner: LineManner, rules: PhaseRules, grid: NormalGrid, room: Floats
+    law: Law, manner: LineManner, rules: PhaseRules, grid: NormalGrid, room: Matrix
 ) -> tuple[bool, LineContact]:
     """Return whether the contact of two rigid bodies is solved to the tolerance, and the contact.
 

@@ -1,14 +1,13 @@
 """What the core collocates a phase of the contact of two rigid bodies with.
 
-The annotations name the types of compiled code, in `vibroimpact.compiler.types`.
+The annotations name the types of compiled code.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-from vibroimpact.arrays import Integers
-from vibroimpact.dynamics.core.records import Boolean, Cube, Integer, Real
+from vibroimpact.arrays import Cube, Integers
 
 TURNING_AT_TOUCH, TURNING, AT_TOUCH, BETWEEN, AT_TOUCH_INWARD, BETWEEN_INWARD = range(6)
 """Kinds of segment: TURNING, its speed is zero at its deep end; AT_TOUCH, its shallow end is where
@@ -67,11 +66,11 @@ class PhaseRules(NamedTuple):
     at its own.
     """
 
-    tolerance: Real
-    roughness: Real
-    roughness_inside: Real
-    sharper: Real
-    root: Integer
+    tolerance: float
+    roughness: float
+    roughness_inside: float
+    sharper: float
+    root: int
     counts: Integers
     vectors: Cube
     matrices: Cube
@@ -86,12 +85,12 @@ class Segment(NamedTuple):
     known. wanted: that at the shallow end where the deep end is sought, else 0 [m^2/s^2].
     """
 
-    kind: Integer
-    sign: Real
-    deep: Real
-    shallow: Real
-    begun: Real
-    wanted: Real
+    kind: int
+    sign: float
+    deep: float
+    shallow: float
+    begun: float
+    wanted: float
 
 
 class Phase(NamedTuple):
@@ -102,10 +101,10 @@ class Phase(NamedTuple):
     coefficients of acceleration and pace, relative to their integrals.
     """
 
-    solved: Boolean
-    rule: Integer
-    deep: Real
-    reached: Real
-    duration: Real
-    lost: Real
-    roughness: Real
+    solved: bool
+    rule: int
+    deep: float
+    reached: float
+    duration: float
+    lost: float
+    roughness: float

@@ -19,13 +19,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Complex, Floats
+from vibroimpact.arrays import Complex, Cube, Matrix, Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.records import Basis, ModalWeights, Motion, Start, Surfaces
 
 
-@compiled(lambda t: t.of(ModalWeights)(t.matrix))
-def with_extents(weights: Floats) -> ModalWeights:
+@compiled
+def with_extents(weights: Matrix) -> ModalWeights:
     """Return weights with the extent of each row: the modes of the other body have none."""
     first = np.zeros(len(weights), dtype=np.int64)
     last = np.zeros(len(weights), dtype=np.int64)
@@ -38,7 +38,7 @@ def with_extents(weights: Floats) -> ModalWeights:
     return ModalWeights(weights, first, last)
 
 
-@compiled(lambda t: t.of(ModalWeights)(t.of(Surfaces), t.of(Start)))
+@compiled
 def modal_weights(surfaces: Surfaces, start: Start) -> ModalWeights:
     """Return the weights of the modes in the sums of `modal_sums`.
 
@@ -73,9 +73,9 @@ def modal_weights(surfaces: Surfaces, start: Start) -> ModalWeights:
     return with_extents(weights)
 
 
-@compiled(lambda t: t.void(t.of(Surfaces), t.real, t.real, t.matrix))
+@compiled
 def write_admittances(
-    surfaces: Surfaces, sigma: float, sigma_imaginary: float, admittances: Floats
+    surfaces: Surfaces, sigma: float, sigma_imaginary: float, admittances: Matrix
 ) -> None:
     """Write 1/(1 + d sigma + w^2 sigma^2) of all modes, as real and imaginary parts (2,
     m), into `admittances`.
@@ -92,9 +92,9 @@ def write_admittances(
         admittances[1, mode] = -impedance_imaginary * inverse
 
 
-@compiled(lambda t: t.void(t.of(Surfaces), t.real, t.real, t.matrix, t.matrix))
+@compiled
 def write_slopes(
-    surfaces: Surfaces, sigma: float, sigma_imaginary: float, admittances: Floats, slopes: Floats
+    surfaces: Surfaces, sigma: float, sigma_imaginary: float, admittances: Matrix, slopes: Matrix
 ) -> None:
     """Write the derivatives of the admittances of `write_admittances` by sigma into
     `slopes` (2, m).
@@ -111,8 +111,8 @@ def write_slopes(
         slopes[1, mode] = -(slope * squared_imaginary + slope_imaginary * squared)
 
 
-@compiled(lambda t: t.tuple(t.real, t.real)(t.vector, t.vector, t.vector))
-def weighted_sum(weights: Floats, real: Floats, imaginary: Floats) -> tuple[float, float]:
+@compiled
+def weighted_sum(weights: Vector, real: Vector, imaginary: Vector) -> tuple[float, float]:
     """Return the sums of real and imaginary parts, times their weights; two sums of each
     side by side wait less for one another.
     """
@@ -132,8 +132,8 @@ def weighted_sum(weights: Floats, real: Floats, imaginary: Floats) -> tuple[floa
     return total + other, total_imaginary + other_imaginary
 
 
-@compiled(lambda t: t.void(t.of(ModalWeights), t.matrix, t.integer, t.cube))
-def write_sums(weights: ModalWeights, values: Floats, k: int, sums: Floats) -> None:
+@compiled
+def write_sums(weights: ModalWeights, values: Matrix, k: int, sums: Cube) -> None:
     """Write the sums of values of all modes (2, m), times their weights, into `sums` (2, W, H) at
     k.
     """
@@ -147,10 +147,10 @@ def write_sums(weights: ModalWeights, values: Floats, k: int, sums: Floats) -> N
         sums[1, row, k] = imaginary
 
 
-@compiled(lambda t: t.cube(t.of(Surfaces), t.of(ModalWeights), t.matrix, t.real))
+@compiled
 def modal_sums(
-    surfaces: Surfaces, weights: ModalWeights, eigenvalues: Floats, length: float
-) -> Floats:
+    surfaces: Surfaces, weights: ModalWeights, eigenvalues: Matrix, length: float
+) -> Cube:
     """Return the weighted sums over the modes of 1/(1 + d sigma + w^2 sigma^2) at all
     eigenvalues, as parts (2, W, H).
     """
@@ -165,10 +165,10 @@ def modal_sums(
     return sums
 
 
-@compiled(lambda t: t.cube(t.of(Surfaces), t.of(ModalWeights), t.matrix, t.real))
+@compiled
 def modal_slopes(
-    surfaces: Surfaces, weights: ModalWeights, eigenvalues: Floats, length: float
-) -> Floats:
+    surfaces: Surfaces, weights: ModalWeights, eigenvalues: Matrix, length: float
+) -> Cube:
     """Return the derivatives of the sums of `modal_sums` by sigma (2, W, H)."""
     number = eigenvalues.shape[1]
     sums = np.empty((2, len(weights.values), number))
@@ -183,8 +183,8 @@ def modal_slopes(
     return sums
 
 
-@compiled(lambda t: t.void(t.matrix, t.integer, t.complex, t.vector))
-def add_at_nodes(backward: Floats, k: int, coefficient: complex, values: Floats) -> None:
+@compiled
+def add_at_nodes(backward: Matrix, k: int, coefficient: complex, values: Vector) -> None:
     """Add what a coefficient in the eigenbasis is at the nodes to `values` (N,)."""
     for node in range(len(values)):
         values[node] += (
@@ -192,9 +192,9 @@ def add_at_nodes(backward: Floats, k: int, coefficient: complex, values: Floats)
         )
 
 
-@compiled(lambda t: t.void(t.matrix, t.complexes, t.matrix, t.integer, t.integer))
+@compiled
 def write_matrix(
-    filters: Floats, operators: Complex, matrix: Floats, row: int, column: int
+    filters: Matrix, operators: Complex, matrix: Matrix, row: int, column: int
 ) -> None:
     """Write the matrix on the nodes of an operator in the eigenbasis (H,) into the block
     of `matrix` that begins at a row and a column.
@@ -211,9 +211,7 @@ def write_matrix(
             matrix[row + node, column + other] = entries[node * nodes + other]
 
 
-@compiled(
-    lambda t: t.of(Motion)(t.of(Basis), t.of(Surfaces), t.of(ModalWeights), t.of(Start), t.real)
-)
+@compiled
 def surface_motion(
     basis: Basis, surfaces: Surfaces, weights: ModalWeights, start: Start, length: float
 ) -> Motion:
@@ -331,8 +329,8 @@ def surface_motion(
     )
 
 
-@compiled(lambda t: t.void(t.matrix, t.vector, t.integer, t.complexes))
-def to_eigenbasis(forward: Floats, values: Floats, k: int, coefficients: Complex) -> None:
+@compiled
+def to_eigenbasis(forward: Matrix, values: Vector, k: int, coefficients: Complex) -> None:
     """Write the coefficients of an eigenvector in the nodal values (c N,) of each contact
     into `coefficients` (c,).
     """
@@ -347,20 +345,16 @@ def to_eigenbasis(forward: Floats, values: Floats, k: int, coefficients: Complex
         coefficients[contact] = complex(real, imaginary)
 
 
-@compiled(
-    lambda t: t.matrix(
-        t.of(Basis), t.of(Surfaces), t.of(Start), t.of(Motion), t.real, t.vector, t.vector
-    )
-)
+@compiled
 def motion_by_length(
     basis: Basis,
     surfaces: Surfaces,
     start: Start,
     motion: Motion,
     length: float,
-    force: Floats,
-    static: Floats,
-) -> Floats:
+    force: Vector,
+    static: Vector,
+) -> Matrix:
     """Return the derivatives of approach, rate and closing rate at the nodes by the length of a
     stretch (3, M).
 

@@ -1,22 +1,13 @@
 """What the core computes with: arrays, gathered in named tuples.
 
-The annotations name the types of compiled code, in `vibroimpact.compiler.types`.
+The annotations name the types of compiled code.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
-from vibroimpact.arrays import Complex, Floats, Integers
-
-Vector: TypeAlias = Floats
-Matrix: TypeAlias = Floats
-Cube: TypeAlias = Floats
-Complexes: TypeAlias = Complex
-Real: TypeAlias = float
-Integer: TypeAlias = int
-Boolean: TypeAlias = bool
-
+from vibroimpact.arrays import Cube, Integers, Matrix, Vector
 
 MAPS = ("touch", "inside", "release")
 """Maps of the time of a stretch, by their numbers."""
@@ -51,8 +42,8 @@ class Basis(NamedTuple):
     grid: Matrix
     forces_between: Matrix
     displacements_between: Matrix
-    time_map: Integer
-    root: Integer
+    time_map: int
+    root: int
     eigenvalues: Matrix
     one: Matrix
     clock: Matrix
@@ -78,7 +69,7 @@ class Flight(NamedTuple):
     fading (k,): what it leaves of the deformations of the massless elements.
     """
 
-    time: Real
+    time: float
     by_displacement: Vector
     by_velocity: Vector
     fading: Vector
@@ -106,13 +97,13 @@ class System(NamedTuple):
     indentation_shape: Vector
     rate: Vector
     mobility: Vector
-    offset: Real
-    gravity: Real
-    mass: Real
-    compliance: Real
-    flexibility: Real
-    rigid: Integer
-    driven: Integer
+    offset: float
+    gravity: float
+    mass: float
+    compliance: float
+    flexibility: float
+    rigid: int
+    driven: int
 
 
 class Approach(NamedTuple):
@@ -123,13 +114,13 @@ class Approach(NamedTuple):
     terms: sum of the magnitudes of what the approach is the sum of [m].
     """
 
-    approach: Real
-    rate: Real
-    rigid: Real
-    rigid_rate: Real
-    reach: Real
-    fastest: Real
-    terms: Real
+    approach: float
+    rate: float
+    rigid: float
+    rigid_rate: float
+    reach: float
+    fastest: float
+    terms: float
 
 
 class Law(NamedTuple):
@@ -146,14 +137,14 @@ class Law(NamedTuple):
     addresses: Integers
     coefficients: Vector
     series: Vector
-    speed: Real
-    touch: Real
-    release: Real
-    release_level: Real
-    memory_level: Real
-    first_breakpoint: Real
-    second_breakpoint: Real
-    jump: Real
+    speed: float
+    touch: float
+    release: float
+    release_level: float
+    memory_level: float
+    first_breakpoint: float
+    second_breakpoint: float
+    jump: float
 
 
 class Surfaces(NamedTuple):
@@ -230,10 +221,10 @@ class Event(NamedTuple):
     stretch at which it is met, and the contact that it belongs to.
     """
 
-    kind: Integer
-    level: Real
-    x: Real
-    contact: Integer
+    kind: int
+    level: float
+    x: float
+    contact: int
 
 
 class End(NamedTuple):
@@ -241,9 +232,9 @@ class End(NamedTuple):
     that is it [m]; and the contact it belongs to.
     """
 
-    kind: Integer
-    level: Real
-    contact: Integer
+    kind: int
+    level: float
+    contact: int
 
 
 class ModalWeights(NamedTuple):
@@ -294,7 +285,7 @@ class Histories(NamedTuple):
     closing: Matrix
     delta: Matrix
     dissipated: Vector
-    roughness: Real
+    roughness: float
 
 
 class Coordinates(NamedTuple):

@@ -23,7 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix, Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.cubics import cubic_at
 from vibroimpact.dynamics.core.friction_records import (
@@ -43,7 +43,6 @@ from vibroimpact.dynamics.core.normal_records import (
     TIME,
     NormalPath,
 )
-from vibroimpact.dynamics.core.records import Matrix, Real, Vector
 from vibroimpact.dynamics.core.sphere_records import (
     RubbedSphere,
     SphereState,
@@ -78,9 +77,9 @@ class RollingSphere(NamedTuple):
     (2,): along the plate [m/s^2].
     """
 
-    mass: Real
-    turn: Real
-    rolling_coefficient: Real
+    mass: float
+    turn: float
+    rolling_coefficient: float
     gravity: Vector
 
 
@@ -98,10 +97,10 @@ class ResistedPath(NamedTuple):
     turning: Matrix
     spin: Vector
     friction: Matrix
-    microslip: Real
+    microslip: float
 
 
-@compiled(lambda t: t.tuple(t.real, t.real, t.real)(t.real, t.real, t.real))
+@compiled
 def slowed(turning_x: float, turning_y: float, most: float) -> tuple[float, float, float]:
     """Return what a moment leaves of w that can take `most` of it [m/s], and how much
     more it could have taken.
@@ -113,31 +112,18 @@ def slowed(turning_x: float, turning_y: float, most: float) -> tuple[float, floa
     return 0.0, 0.0, most - speed
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(RollingSphere),
-        t.of(TangentialHistory),
-        t.vector,
-        t.vector,
-        t.vector,
-        t.matrix,
-        t.matrix,
-        t.matrix,
-        t.matrix,
-        t.vector,
-    )
-)
+@compiled
 def march_resisted(
     sphere: RollingSphere,
     history: TangentialHistory,
-    time: Floats,
-    force: Floats,
-    impulse: Floats,
-    velocity: Floats,
-    turning: Floats,
-    friction: Floats,
-    moved: Floats,
-    slid: Floats,
+    time: Vector,
+    force: Vector,
+    impulse: Vector,
+    velocity: Matrix,
+    turning: Matrix,
+    friction: Matrix,
+    moved: Matrix,
+    slid: Vector,
 ) -> None:
     """Write the motion along the plate during a contact, at G times.
 
@@ -194,9 +180,9 @@ def march_resisted(
         turning[step + 1, 1] = turning_y
 
 
-@compiled(lambda t: t.of(TangentialHistory)(t.of(Rubbing), t.vector, t.real, t.real))
+@compiled
 def history_at_touch(
-    rubbing: Rubbing, coefficients: Floats, coefficient: float, rim: float
+    rubbing: Rubbing, coefficients: Vector, coefficient: float, rim: float
 ) -> TangentialHistory:
     """Return the history of a contact before first touch.
 
@@ -221,8 +207,8 @@ def history_at_touch(
     )
 
 
-@compiled(lambda t: t.real(t.vector, t.vector))
-def rim_of(coefficients: Floats, force: Floats) -> float:
+@compiled
+def rim_of(coefficients: Vector, force: Vector) -> float:
     """Return the radius of the largest contact under normal forces (G,) [m]."""
     largest = 0.0
     for point in range(len(force)):
@@ -230,8 +216,8 @@ def rim_of(coefficients: Floats, force: Floats) -> float:
     return float(np.cbrt(0.75 * largest * coefficients[RADIUS] / coefficients[MODULUS]))
 
 
-@compiled(lambda t: t.integer(t.of(RubbedSphere), t.vector, t.of(NormalPath)))
-def parts_of(sphere: RubbedSphere, coefficients: Floats, normal: NormalPath) -> int:
+@compiled
+def parts_of(sphere: RubbedSphere, coefficients: Vector, normal: NormalPath) -> int:
     """Return how many steps there are in each of the normal motion's."""
     time = normal.rows[TIME]
     longest = 0.0
@@ -242,8 +228,8 @@ def parts_of(sphere: RubbedSphere, coefficients: Floats, normal: NormalPath) -> 
     return int(min(max(math.ceil(turning / _MOST_TURNING), _PARTS), _MOST_PARTS))
 
 
-@compiled(lambda t: t.matrix(t.of(NormalPath), t.integer))
-def refined(normal: NormalPath, parts: int) -> Floats:
+@compiled
+def refined(normal: NormalPath, parts: int) -> Matrix:
     """Return times [s], normal forces [N] and their impulses so far [N s] (3, G), with `parts`
     steps for each of the motion's.
     """
@@ -296,15 +282,15 @@ def refined(normal: NormalPath, parts: int) -> Floats:
     return fine[:, :count].copy()
 
 
-@compiled(lambda t: t.vector(t.of(RubbedSphere), t.real, t.vector, t.vector, t.matrix, t.matrix))
+@compiled
 def spins_about_normal(
     sphere: RubbedSphere,
     spin: float,
-    time: Floats,
-    force: Floats,
-    friction: Floats,
-    slip: Floats,
-) -> Floats:
+    time: Vector,
+    force: Vector,
+    friction: Matrix,
+    slip: Matrix,
+) -> Vector:
     """Return a spin about the normal [rad/s] (G,), which twisting slows.
 
     It does not act on the motion along the plate. `friction` [N], `slip` [m/s]: (G, 2).
@@ -324,14 +310,10 @@ def spins_about_normal(
     return spins
 
 
-@compiled(
-    lambda t: t.of(ResistedPath)(
-        t.of(Rubbing), t.vector, t.of(RubbedSphere), t.of(SphereState), t.of(NormalPath)
-    )
-)
+@compiled
 def resisted_path(
     rubbing: Rubbing,
-    coefficients: Floats,
+    coefficients: Vector,
     sphere: RubbedSphere,
     begun: SphereState,
     normal: NormalPath,
@@ -385,7 +367,7 @@ def resisted_path(
     return ResistedPath(time, moved, velocity, turning, spin, friction, microslip)
 
 
-@compiled(lambda t: t.of(SphereState)(t.of(RubbedSphere), t.of(SphereState), t.of(ResistedPath)))
+@compiled
 def resisted_end(sphere: RubbedSphere, begun: SphereState, path: ResistedPath) -> SphereState:
     """Return the state of a sphere at the end of such a contact."""
     last = len(path.time) - 1

@@ -19,7 +19,7 @@ from vibroimpact.dynamics.core.records import Law, State, System
 _REST_MARGIN = 0.5  # of the weight: largest variation of the force at rest
 
 
-@compiled(lambda t: t.boolean(t.of(System), t.of(Law), t.of(Manner), t.of(State), t.real))
+@compiled
 def is_captured(system: System, law: Law, manner: Manner, state: State, delta: float) -> bool:
     """Is the energy too small to lift the sphere out of its indentation? Never so where a
     drive brings more.
@@ -37,7 +37,7 @@ def is_captured(system: System, law: Law, manner: Manner, state: State, delta: f
     return energy < barrier + least
 
 
-@compiled(lambda t: t.boolean(t.of(System), t.of(Law), t.of(State), t.real))
+@compiled
 def is_near_rest(system: System, law: Law, state: State, force: float) -> bool:
     """May a riding sphere be at rest? A necessary condition that needs no eigenvalues; where a
     plate is driven, always.

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix, Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.followed_motion import followed_path
 from vibroimpact.dynamics.core.friction_records import ELASTIC, Rubbing
@@ -18,7 +18,9 @@ from vibroimpact.dynamics.core.line_records import ContactManner, LineManner
 from vibroimpact.dynamics.core.lines import room_of, solve_pair, with_bodies
 from vibroimpact.dynamics.core.normal_motion import written_path
 from vibroimpact.dynamics.core.normal_records import TIME, NormalGrid, NormalPath
-from vibroimpact.dynamics.core.records import Law, Matrix, Real
+from vibroimpact.dynamics.core.records import (
+    Law,
+)
 from vibroimpact.dynamics.core.resisted_contact import resisted_end, resisted_path
 from vibroimpact.dynamics.core.sliding_paths import DISPLACEMENT, VELOCITY, slide_elastically
 from vibroimpact.dynamics.core.sphere_contact import (
@@ -50,17 +52,17 @@ class SlidPath(NamedTuple):
     slip: FirstSlip
     path: Matrix
     change: Change
-    microslip: Real
+    microslip: float
 
 
 class Rubbed(NamedTuple):
     """The end of a contact: the state of the sphere, and the energy lost in microslip [J]."""
 
     end: SphereState
-    microslip: Real
+    microslip: float
 
 
-@compiled(lambda t: t.of(NormalPath)(t.boolean, t.of(Law), t.of(LineManner), t.of(NormalGrid)))
+@compiled
 def normal_path(solved: bool, law: Law, bodies: LineManner, grid: NormalGrid) -> NormalPath:
     """Return the normal motion of a contact, which is on the grid if it was solved by
     collocation.
@@ -70,7 +72,7 @@ def normal_path(solved: bool, law: Law, bodies: LineManner, grid: NormalGrid) ->
     return followed_path(law, bodies, grid.steps)
 
 
-@compiled(lambda t: t.of(NormalPath)(t.of(Law), t.of(LineManner), t.of(ContactManner)))
+@compiled
 def solved_path(law: Law, bodies: LineManner, contacts: ContactManner) -> NormalPath:
     """Solve a contact again, and return its normal motion."""
     room = room_of(contacts.rules)
@@ -78,14 +80,10 @@ def solved_path(law: Law, bodies: LineManner, contacts: ContactManner) -> Normal
     return normal_path(solved, law, bodies, contacts.grid)
 
 
-@compiled(
-    lambda t: t.of(SlidPath)(
-        t.of(Rubbing), t.vector, t.of(RubbedSphere), t.of(SphereState), t.of(NormalPath)
-    )
-)
+@compiled
 def slid_path(
     rubbing: Rubbing,
-    coefficients: Floats,
+    coefficients: Vector,
     sphere: RubbedSphere,
     begun: SphereState,
     normal: NormalPath,
@@ -105,14 +103,10 @@ def slid_path(
     return SlidPath(slip, path, change, microslip)
 
 
-@compiled(
-    lambda t: t.of(Rubbed)(
-        t.of(Rubbing), t.vector, t.of(RubbedSphere), t.of(SphereState), t.of(NormalPath)
-    )
-)
+@compiled
 def rub(
     rubbing: Rubbing,
-    coefficients: Floats,
+    coefficients: Vector,
     sphere: RubbedSphere,
     begun: SphereState,
     normal: NormalPath,
@@ -152,29 +146,17 @@ def rub(
     return Rubbed(end, slid.microslip)
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(ContactManner),
-        t.matrix,
-        t.matrix,
-        t.of(Rubbing),
-        t.matrix,
-        t.matrix,
-        t.matrix,
-        t.matrix,
-        t.vector,
-    )
-)
+@compiled
 def rub_pairs(
     contacts: ContactManner,
-    coefficients: Floats,
-    touches: Floats,
+    coefficients: Matrix,
+    touches: Matrix,
     rubbing: Rubbing,
-    friction: Floats,
-    spheres: Floats,
-    states: Floats,
-    ends: Floats,
-    microslips: Floats,
+    friction: Matrix,
+    spheres: Matrix,
+    states: Matrix,
+    ends: Matrix,
+    microslips: Vector,
 ) -> None:
     """Write the ends of B contacts with friction.
 

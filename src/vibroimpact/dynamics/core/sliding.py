@@ -70,9 +70,7 @@ _ROUNDS = 3
 """How often the place at which a spring begins to slide at the end of a contact is mended."""
 
 
-@compiled(
-    lambda t: t.pair(t.of(Friction), t.of(NormalState), t.of(NormalState), t.of(SlipState), t.real)
-)
+@compiled
 def last_slide(
     friction: Friction, start: NormalState, end: NormalState, before: SlipState, power: float
 ) -> tuple[float, float]:
@@ -97,11 +95,7 @@ def last_slide(
     return share, -1.0 if integral < 0.0 else 1.0
 
 
-@compiled(
-    lambda t: t.of(Cubic)(
-        t.of(NormalState), t.of(NormalState), t.of(SlipState), t.of(SlipState), t.real, t.real
-    )
-)
+@compiled
 def friction_reserve(
     start: NormalState,
     end: NormalState,
@@ -122,16 +116,7 @@ def friction_reserve(
     )
 
 
-@compiled(
-    lambda t: t.pair(
-        t.of(Friction),
-        t.of(NormalState),
-        t.of(NormalState),
-        t.of(SlipState),
-        t.of(SlipState),
-        t.real,
-    )
-)
+@compiled
 def spring_slides(
     friction: Friction,
     start: NormalState,
@@ -170,7 +155,7 @@ def spring_slides(
     return share, direction
 
 
-@compiled(lambda t: t.pair(t.of(NormalState), t.of(NormalState), t.of(SlipState), t.of(SlipState)))
+@compiled
 def rim_slips(
     start: NormalState, end: NormalState, before: SlipState, after: SlipState
 ) -> tuple[float, float]:
@@ -190,11 +175,7 @@ def rim_slips(
     return share, direction
 
 
-@compiled(
-    lambda t: t.of(SlipState)(
-        t.of(Friction), t.of(Curve), t.of(NormalState), t.of(SlipState), t.real
-    )
-)
+@compiled
 def begin_slip(
     friction: Friction, curve: Curve, normal: NormalState, state: SlipState, direction: float
 ) -> SlipState:
@@ -210,9 +191,7 @@ def begin_slip(
     return begin_sliding(friction, state, normal.depth) if state.front == 0.0 else state
 
 
-@compiled(
-    lambda t: t.of(SlipState)(t.of(Friction), t.of(Curve), t.of(NormalState), t.of(SlipState))
-)
+@compiled
 def cease_to_slip(
     friction: Friction, curve: Curve, normal: NormalState, state: SlipState
 ) -> SlipState:
@@ -245,9 +224,7 @@ def cease_to_slip(
     return end_sliding(friction, state, normal.depth) if has_slid else state
 
 
-@compiled(
-    lambda t: t.of(SlipState)(t.of(Friction), t.of(Curve), t.of(NormalState), t.of(SlipState))
-)
+@compiled
 def turn_back(friction: Friction, curve: Curve, normal: NormalState, state: SlipState) -> SlipState:
     """Return the state of a contact that ceases to slip at its rim; one that shrinks
     slips in the other direction.
@@ -260,9 +237,7 @@ def turn_back(friction: Friction, curve: Curve, normal: NormalState, state: Slip
     return state
 
 
-@compiled(
-    lambda t: t.of(SlipState)(t.of(Friction), t.of(Curve), t.of(NormalState), t.of(SlipState))
-)
+@compiled
 def settle(friction: Friction, curve: Curve, start: NormalState, state: SlipState) -> SlipState:
     """Return the state with which a part of a contact begins, whose rates may be others
     than at the end of the part before.
@@ -278,11 +253,7 @@ def settle(friction: Friction, curve: Curve, start: NormalState, state: SlipStat
     return state
 
 
-@compiled(
-    lambda t: t.of(SlipState)(
-        t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState)
-    )
-)
+@compiled
 def jump_of_spring(
     friction: Friction, curve: Curve, start: NormalState, end: NormalState, state: SlipState
 ) -> SlipState:
@@ -300,11 +271,7 @@ def jump_of_spring(
     return begin_sliding(friction, state, end.depth) if is_over and not had_slid else state
 
 
-@compiled(
-    lambda t: t.of(SlipState)(
-        t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState)
-    )
-)
+@compiled
 def jump_of_rim(
     friction: Friction, curve: Curve, start: NormalState, end: NormalState, state: SlipState
 ) -> SlipState:
@@ -338,11 +305,7 @@ def jump_of_rim(
     return begin_sliding(friction, state, end.depth) if not has_slid and front == 0.0 else state
 
 
-@compiled(
-    lambda t: t.of(SlipState)(
-        t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState)
-    )
-)
+@compiled
 def join(
     friction: Friction, curve: Curve, start: NormalState, end: NormalState, state: SlipState
 ) -> SlipState:
@@ -356,16 +319,7 @@ def join(
     return jump_of_spring(friction, curve, start, end, state)
 
 
-@compiled(
-    lambda t: t.tuple(t.of(SlipState), t.real)(
-        t.of(Friction),
-        t.of(Curve),
-        t.of(NormalState),
-        t.of(NormalState),
-        t.of(SlipState),
-        t.boolean,
-    )
-)
+@compiled
 def advance_sticking(
     friction: Friction,
     curve: Curve,
@@ -402,16 +356,7 @@ def advance_sticking(
     return begin_slip(friction, curve, normal_between(start, end, share), state, direction), share
 
 
-@compiled(
-    lambda t: t.tuple(t.of(SlipState), t.real)(
-        t.of(Friction),
-        t.of(Curve),
-        t.of(NormalState),
-        t.of(NormalState),
-        t.of(SlipState),
-        t.boolean,
-    )
-)
+@compiled
 def advance_sliding(
     friction: Friction,
     curve: Curve,
@@ -435,16 +380,7 @@ def advance_sliding(
     return turn_back(friction, curve, normal_between(start, end, share), state), share
 
 
-@compiled(
-    lambda t: t.of(SlipState)(
-        t.of(Friction),
-        t.of(Curve),
-        t.of(NormalState),
-        t.of(NormalState),
-        t.of(SlipState),
-        t.of(SlipState),
-    )
-)
+@compiled
 def mended_near_middle(
     friction: Friction,
     curve: Curve,
@@ -471,17 +407,7 @@ def mended_near_middle(
     )
 
 
-@compiled(
-    lambda t: t.of(SlipState)(
-        t.of(Friction),
-        t.of(Curve),
-        t.of(NormalState),
-        t.of(NormalState),
-        t.of(SlipState),
-        t.of(Cubic),
-        t.real,
-    )
-)
+@compiled
 def arrived_at_middle(
     friction: Friction,
     curve: Curve,
@@ -509,16 +435,7 @@ def arrived_at_middle(
     return begin_sliding(friction, state, known.depth)
 
 
-@compiled(
-    lambda t: t.tuple(t.of(SlipState), t.real)(
-        t.of(Friction),
-        t.of(Curve),
-        t.of(NormalState),
-        t.of(NormalState),
-        t.of(SlipState),
-        t.boolean,
-    )
-)
+@compiled
 def advance_slipping(
     friction: Friction,
     curve: Curve,
@@ -557,11 +474,7 @@ def advance_slipping(
     return turn_back(friction, curve, normal_between(start, end, share), state), share
 
 
-@compiled(
-    lambda t: t.of(SlipState)(
-        t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState)
-    )
-)
+@compiled
 def advance_step(
     friction: Friction, curve: Curve, start: NormalState, end: NormalState, state: SlipState
 ) -> SlipState:

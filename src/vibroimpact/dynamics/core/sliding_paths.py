@@ -16,7 +16,7 @@ import math
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix, Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.cubics import cubic_at
 from vibroimpact.dynamics.core.friction_records import (
@@ -64,8 +64,8 @@ _MOST_PARTS = 64
 """
 
 
-@compiled(lambda t: t.void(t.matrix, t.real, t.real, t.matrix))
-def write_grid(normal: Floats, hertz: float, largest: float, grid: Floats) -> None:
+@compiled
+def write_grid(normal: Matrix, hertz: float, largest: float, grid: Matrix) -> None:
     """Write the normal motion of a contact at G points (G, 7), in the order of `NormalState`.
 
     Parameters
@@ -110,14 +110,14 @@ def write_grid(normal: Floats, hertz: float, largest: float, grid: Floats) -> No
             grid[point, 4] = min(grid[point, 4], 3.0 * grid[point, 3])
 
 
-@compiled(lambda t: t.of(NormalState)(t.matrix, t.integer))
-def normal_at(grid: Floats, point: int) -> NormalState:
+@compiled
+def normal_at(grid: Matrix, point: int) -> NormalState:
     """Return the normal motion at a point of the grid."""
     row = grid[point]
     return NormalState(row[0], row[1], row[2], row[3], row[4], row[5], row[6])
 
 
-@compiled(lambda t: t.of(NormalState)(t.of(NormalState), t.of(NormalState), t.integer, t.integer))
+@compiled
 def normal_of_part(start: NormalState, end: NormalState, part: int, parts: int) -> NormalState:
     """Return the normal motion at the start of one of some equal parts of a step, for a
     parameter that goes from 0 to 1 in a part.
@@ -146,8 +146,8 @@ def normal_of_part(start: NormalState, end: NormalState, part: int, parts: int) 
     )
 
 
-@compiled(lambda t: t.void(t.of(Friction), t.matrix, t.vector, t.real, t.matrix))
-def write_slide(friction: Friction, grid: Floats, steps: Floats, slip: float, path: Floats) -> None:
+@compiled
+def write_slide(friction: Friction, grid: Matrix, steps: Vector, slip: float, path: Matrix) -> None:
     """Write velocity, displacement and integral (3, G) of a contact every point of which slips all
     the time.
 
@@ -185,9 +185,9 @@ def write_slide(friction: Friction, grid: Floats, steps: Floats, slip: float, pa
         path[FRICTION_FORCE, point] = normal.most
 
 
-@compiled(lambda t: t.integer(t.of(Friction), t.matrix, t.vector, t.real, t.matrix))
+@compiled
 def first_point_to_stick(
-    friction: Friction, grid: Floats, steps: Floats, rounding: float, path: Floats
+    friction: Friction, grid: Matrix, steps: Vector, rounding: float, path: Matrix
 ) -> int:
     """Return the last point up to which a contact certainly slides: 0 if it sticks from first touch
     on, -1 if it slides throughout.
@@ -210,19 +210,15 @@ def first_point_to_stick(
     return -1
 
 
-@compiled(
-    lambda t: t.real(
-        t.of(Friction), t.of(Curve), t.matrix, t.vector, t.integer, t.integer, t.matrix
-    )
-)
+@compiled
 def follow_slip(
     friction: Friction,
     curve: Curve,
-    grid: Floats,
-    steps: Floats,
+    grid: Matrix,
+    steps: Vector,
     first: int,
     parts: int,
-    path: Floats,
+    path: Matrix,
 ) -> float:
     """Write the motion of a contact from a point on, and return the energy lost in microslip, over
     mass and the square of kappa [J/kg].
@@ -285,8 +281,8 @@ def follow_slip(
     return state.microslip
 
 
-@compiled(lambda t: t.integer(t.of(Friction), t.matrix))
-def parts_of_step(friction: Friction, grid: Floats) -> int:
+@compiled
+def parts_of_step(friction: Friction, grid: Matrix) -> int:
     """Return into how many parts the steps of a contact are divided, a power of two, so
     that what sticks turns by a small angle in each.
     """
@@ -302,17 +298,15 @@ def parts_of_step(friction: Friction, grid: Floats) -> int:
     return parts
 
 
-@compiled(
-    lambda t: t.real(t.of(Rubbing), t.vector, t.real, t.real, t.real, t.of(NormalPath), t.matrix)
-)
+@compiled
 def slide_elastically(
     rubbing: Rubbing,
-    coefficients: Floats,
+    coefficients: Vector,
     slip: float,
     pull: float,
     mass: float,
     normal: NormalPath,
-    path: Floats,
+    path: Matrix,
 ) -> float:
     """Follow the sliding of a contact, and return the energy lost while a part of it sticks [J].
 

@@ -39,13 +39,13 @@ _GAUSS_WEIGHTS = np.array([2.5, 4.0, 2.5]) / 9.0
 """Of Gauss' quadrature with three nodes from 0 to 1, from the largest on."""
 
 
-@compiled(lambda t: t.real(t.real))
+@compiled
 def sliding_integral(depth: float) -> float:
     """Return the integral I of a contact that slides [m^1.5]."""
     return (2.0 / 3.0) * depth * math.sqrt(depth)
 
 
-@compiled(lambda t: t.of(NormalState)(t.of(NormalState), t.real))
+@compiled
 def shortened(normal: NormalState, share: float) -> NormalState:
     """Return the normal motion for a parameter that goes from 0 to 1 in a share of the step."""
     return NormalState(
@@ -59,7 +59,7 @@ def shortened(normal: NormalState, share: float) -> NormalState:
     )
 
 
-@compiled(lambda t: t.of(NormalState)(t.of(NormalState), t.of(NormalState), t.real))
+@compiled
 def normal_between(start: NormalState, end: NormalState, share: float) -> NormalState:
     """Return the normal motion at a share of a step."""
     time, _ = cubic_at(Cubic(start.time, start.pace, end.time, end.pace), share)
@@ -79,7 +79,7 @@ def normal_between(start: NormalState, end: NormalState, share: float) -> Normal
     return NormalState(time, pace, pace_slope, depth, depth_slope, most, end.swept - remaining)
 
 
-@compiled(lambda t: t.real(t.of(NormalState), t.of(NormalState)))
+@compiled
 def missed_time(start: NormalState, end: NormalState) -> float:
     """Return the time of a step less the integral of the pace by the same rule [s].
 
@@ -90,11 +90,7 @@ def missed_time(start: NormalState, end: NormalState) -> float:
     return end.time - start.time - by_pace
 
 
-@compiled(
-    lambda t: t.of(SlipState)(
-        t.of(Friction), t.of(NormalState), t.of(NormalState), t.of(SlipState), t.real, t.real
-    )
-)
+@compiled
 def moved(
     friction: Friction,
     start: NormalState,
@@ -117,7 +113,7 @@ def moved(
     )
 
 
-@compiled(lambda t: t.pair(t.of(NormalState), t.real))
+@compiled
 def paced(normal: NormalState, power: float) -> tuple[float, float]:
     """Return the pace times a power of the root of the depth, and its derivative."""
     if power == 0.0:
@@ -130,11 +126,7 @@ def paced(normal: NormalState, power: float) -> tuple[float, float]:
     return normal.pace * raised, slope
 
 
-@compiled(
-    lambda t: t.of(SlipState)(
-        t.of(Friction), t.of(NormalState), t.of(NormalState), t.of(SlipState), t.real
-    )
-)
+@compiled
 def stick(
     friction: Friction, start: NormalState, end: NormalState, before: SlipState, power: float
 ) -> SlipState:
@@ -178,9 +170,7 @@ def stick(
     return moved(friction, start, end, before, velocity, integral)
 
 
-@compiled(
-    lambda t: t.of(SlipState)(t.of(Friction), t.of(NormalState), t.of(NormalState), t.of(SlipState))
-)
+@compiled
 def slide(friction: Friction, start: NormalState, end: NormalState, before: SlipState) -> SlipState:
     """Return the motion at the end of a step in which all of a contact slides."""
     sliding = friction.stiffness * before.direction * (end.swept - start.swept)
@@ -188,11 +178,7 @@ def slide(friction: Friction, start: NormalState, end: NormalState, before: Slip
     return moved(friction, start, end, before, velocity, before.direction * end.most)
 
 
-@compiled(
-    lambda t: t.of(SlipState)(
-        t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState)
-    )
-)
+@compiled
 def slip_at_rim(
     friction: Friction, curve: Curve, start: NormalState, end: NormalState, before: SlipState
 ) -> SlipState:
@@ -235,7 +221,7 @@ def slip_at_rim(
     return SlipState(velocity, displacement, integral, direction, front, before.microslip)
 
 
-@compiled(lambda t: t.real(t.of(Curve), t.real, t.of(NormalState), t.of(NormalState), t.of(Cubic)))
+@compiled
 def swept_to_middle(
     curve: Curve, direction: float, start: NormalState, end: NormalState, x: Cubic
 ) -> float:

@@ -12,13 +12,13 @@ _TINY = 1e-150
 _RISES = 1e-9  # of the depth: less is rounding where the contact is largest
 
 
-@compiled(lambda t: t.boolean(t.of(NormalState)))
+@compiled
 def rises(normal: NormalState) -> bool:
     """Does the depth of a contact grow, beyond rounding where it is largest?"""
     return normal.depth_slope > _RISES * normal.depth
 
 
-@compiled(lambda t: t.real(t.of(Friction), t.boolean))
+@compiled
 def least_rate(friction: Friction, grows: bool) -> float:
     """Return the rate of the displacement above which all of a contact slides on, over
     that of the depth, as it grows or shrinks.
@@ -26,13 +26,13 @@ def least_rate(friction: Friction, grows: bool) -> float:
     return 1.0 - (friction.growing if grows else friction.shrinking) / 3.0
 
 
-@compiled(lambda t: t.boolean(t.of(SlipState)))
+@compiled
 def slides(state: SlipState) -> bool:
     """Does all of a contact slide?"""
     return state.direction != 0.0 and state.front == 0.0
 
 
-@compiled(lambda t: t.real(t.of(Friction), t.of(SlipState), t.real))
+@compiled
 def energy_over_mass(friction: Friction, state: SlipState, depth: float) -> float:
     """Return kinetic energy, that of the pull, and what a contact stores that slides,
     over mass and the square of kappa [J/kg].
@@ -41,7 +41,7 @@ def energy_over_mass(friction: Friction, state: SlipState, depth: float) -> floa
     return 0.5 * state.velocity * state.velocity - friction.pull * state.displacement + stored
 
 
-@compiled(lambda t: t.of(SlipState)(t.of(SlipState), t.real, t.real))
+@compiled
 def in_direction(state: SlipState, direction: float, front: float) -> SlipState:
     """Return a state with another direction of slip, and another root of the depth at
     which it ends.
@@ -51,7 +51,7 @@ def in_direction(state: SlipState, direction: float, front: float) -> SlipState:
     )
 
 
-@compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(SlipState), t.real))
+@compiled
 def begin_sliding(friction: Friction, state: SlipState, depth: float) -> SlipState:
     """Return the state of a contact of which no part sticks any more: what it has lost in
     microslip is known from its energy.
@@ -62,7 +62,7 @@ def begin_sliding(friction: Friction, state: SlipState, depth: float) -> SlipSta
     )
 
 
-@compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(SlipState), t.real))
+@compiled
 def end_sliding(friction: Friction, state: SlipState, depth: float) -> SlipState:
     """Return the state of a contact that has slid, and from now on sticks in its middle."""
     lost = state.microslip + energy_over_mass(friction, state, depth)
@@ -71,11 +71,7 @@ def end_sliding(friction: Friction, state: SlipState, depth: float) -> SlipState
     )
 
 
-@compiled(
-    lambda t: t.of(Cubic)(
-        t.of(NormalState), t.of(NormalState), t.of(SlipState), t.of(SlipState), t.real, t.real
-    )
-)
+@compiled
 def excess_depth(
     start: NormalState,
     end: NormalState,
@@ -97,7 +93,7 @@ def excess_depth(
     )
 
 
-@compiled(lambda t: t.real(t.of(NormalState), t.of(SlipState), t.real))
+@compiled
 def integral_slope(normal: NormalState, state: SlipState, power: float) -> float:
     """Return the derivative of the integral of a contact that sticks; `power`: see
     `sliding_steps.stick`.
@@ -106,16 +102,7 @@ def integral_slope(normal: NormalState, state: SlipState, power: float) -> float
     return normal.pace * math.sqrt(normal.depth) * state.velocity + stretched
 
 
-@compiled(
-    lambda t: t.of(SlipState)(
-        t.of(Friction),
-        t.of(NormalState),
-        t.of(NormalState),
-        t.of(SlipState),
-        t.of(SlipState),
-        t.real,
-    )
-)
+@compiled
 def state_within(
     friction: Friction,
     start: NormalState,

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.arrays import Floats, Integers
+from vibroimpact.arrays import Integers, Matrix, Vector
 from vibroimpact.compiled import compiled, friction_at, slip_after_at
 from vibroimpact.dynamics.core.normal_records import (
     FORCE,
@@ -29,7 +29,6 @@ from vibroimpact.dynamics.core.normal_records import (
     TIME,
     NormalPath,
 )
-from vibroimpact.dynamics.core.records import Real
 from vibroimpact.dynamics.core.sliding_paths import DISPLACEMENT, FRICTION_FORCE, VELOCITY
 from vibroimpact.dynamics.core.sphere_records import (
     RubbedSphere,
@@ -56,10 +55,10 @@ class FirstSlip(NamedTuple):
     along the direction [m/s^2].
     """
 
-    direction_x: Real
-    direction_y: Real
-    speed: Real
-    pull: Real
+    direction_x: float
+    direction_y: float
+    speed: float
+    pull: float
 
 
 class Change(NamedTuple):
@@ -67,14 +66,14 @@ class Change(NamedTuple):
     [m/s] and spins [rad/s].
     """
 
-    velocity_x: Real
-    velocity_y: Real
-    spin_x: Real
-    spin_y: Real
-    spin_z: Real
+    velocity_x: float
+    velocity_y: float
+    spin_x: float
+    spin_y: float
+    spin_z: float
 
 
-@compiled(lambda t: t.of(FirstSlip)(t.of(RubbedSphere), t.of(SphereState)))
+@compiled
 def first_slip(sphere: RubbedSphere, begun: SphereState) -> FirstSlip:
     """Return the slip at first touch; where nothing slips its direction is that of gravity."""
     turning_x, turning_y = turning_of(sphere, begun)
@@ -93,7 +92,7 @@ def first_slip(sphere: RubbedSphere, begun: SphereState) -> FirstSlip:
     return FirstSlip(direction_x, direction_y, speed, pull)
 
 
-@compiled(lambda t: t.real(t.real, t.real, t.real, t.real, t.real))
+@compiled
 def integral_of_step(
     step: float, rate_before: float, rate: float, bend_before: float, bend: float
 ) -> float:
@@ -101,16 +100,14 @@ def integral_of_step(
     return step * (0.5 * (rate + rate_before) + (bend_before - bend) / 12.0)
 
 
-@compiled(
-    lambda t: t.void(t.integers, t.vector, t.of(FirstSlip), t.real, t.of(NormalPath), t.matrix)
-)
+@compiled
 def slide_impulsively(
     addresses: Integers,
-    coefficients: Floats,
+    coefficients: Vector,
     slip: FirstSlip,
     mass: float,
     normal: NormalPath,
-    path: Floats,
+    path: Matrix,
 ) -> None:
     """Follow the sliding of a contact whose law has no tangential compliance.
 
@@ -159,18 +156,7 @@ def slide_impulsively(
         path[FRICTION_FORCE, point] = force
 
 
-@compiled(
-    lambda t: t.of(SphereState)(
-        t.of(RubbedSphere),
-        t.of(SphereState),
-        t.of(FirstSlip),
-        t.of(Change),
-        t.real,
-        t.real,
-        t.real,
-        t.real,
-    )
-)
+@compiled
 def state_along(
     sphere: RubbedSphere,
     begun: SphereState,
@@ -226,8 +212,8 @@ def state_along(
     )
 
 
-@compiled(lambda t: t.real(t.of(FirstSlip), t.of(NormalPath), t.matrix))
-def held_across(slip: FirstSlip, normal: NormalPath, path: Floats) -> float:
+@compiled
+def held_across(slip: FirstSlip, normal: NormalPath, path: Matrix) -> float:
     """Return what friction takes across the slip, over gravity there [s].
 
     `normal`, `path`: of the contact; see `slide_impulsively`.
@@ -246,7 +232,7 @@ def held_across(slip: FirstSlip, normal: NormalPath, path: Floats) -> float:
     return taken
 
 
-@compiled(lambda t: t.real(t.real, t.real, t.real))
+@compiled
 def between(start: float, end: float, share: float) -> float:
     """Return the value at a share of a straight line, at its end the very value there: a contact
     that slides has no moment by sticking, which is a difference from one.
@@ -254,8 +240,8 @@ def between(start: float, end: float, share: float) -> float:
     return end if share == 1.0 else start + share * (end - start)
 
 
-@compiled(lambda t: t.real(t.of(RubbedSphere), t.real, t.of(NormalPath), t.matrix))
-def twisted_back(sphere: RubbedSphere, spin: float, normal: NormalPath, path: Floats) -> float:
+@compiled
+def twisted_back(sphere: RubbedSphere, spin: float, normal: NormalPath, path: Matrix) -> float:
     """Return the change of a spin about the normal by a contact [rad/s].
 
     `normal`, `path`: of the contact; see `slide_impulsively`.
@@ -303,11 +289,7 @@ def twisted_back(sphere: RubbedSphere, spin: float, normal: NormalPath, path: Fl
     return float(np.sign(spin) * (kept - begun))
 
 
-@compiled(
-    lambda t: t.tuple(t.real, t.real, t.real, t.real)(
-        t.of(RubbedSphere), t.of(SphereState), t.real, t.real
-    )
-)
+@compiled
 def rolling_change(
     sphere: RubbedSphere, after: SphereState, impulse: float, rubbed: float
 ) -> tuple[float, float, float, float]:
@@ -349,13 +331,9 @@ def rolling_change(
     return faster * along_x, faster * along_y, spins * along_y, -spins * along_x
 
 
-@compiled(
-    lambda t: t.of(Change)(
-        t.of(RubbedSphere), t.of(SphereState), t.of(FirstSlip), t.of(NormalPath), t.matrix
-    )
-)
+@compiled
 def change_beside(
-    sphere: RubbedSphere, begun: SphereState, slip: FirstSlip, normal: NormalPath, path: Floats
+    sphere: RubbedSphere, begun: SphereState, slip: FirstSlip, normal: NormalPath, path: Matrix
 ) -> Change:
     """Return what acts beside the friction along the slip changes by the end of a contact.
 
@@ -402,29 +380,17 @@ def change_beside(
     )
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(RubbedSphere),
-        t.of(SphereState),
-        t.of(FirstSlip),
-        t.of(Change),
-        t.vector,
-        t.vector,
-        t.vector,
-        t.real,
-        t.matrix,
-    )
-)
+@compiled
 def write_states_along(
     sphere: RubbedSphere,
     begun: SphereState,
     slip: FirstSlip,
     change: Change,
-    times: Floats,
-    velocities: Floats,
-    displacements: Floats,
+    times: Vector,
+    velocities: Vector,
+    displacements: Vector,
     duration: float,
-    states: Floats,
+    states: Matrix,
 ) -> None:
     """Write the states of a sphere (T, 7) at T times within a contact; see `state_along`."""
     for point in range(len(times)):
@@ -442,12 +408,10 @@ def write_states_along(
         write_state(states[point], state)
 
 
-@compiled(
-    lambda t: t.of(SphereState)(t.integers, t.vector, t.of(RubbedSphere), t.of(SphereState), t.real)
-)
+@compiled
 def struck(
     addresses: Integers,
-    coefficients: Floats,
+    coefficients: Vector,
     sphere: RubbedSphere,
     begun: SphereState,
     impulse: float,
@@ -469,14 +433,14 @@ def struck(
     return state_along(sphere, begun, slip, change, 0.0, velocity, 0.0, 1.0)
 
 
-@compiled(lambda t: t.void(t.integers, t.matrix, t.matrix, t.matrix, t.vector, t.matrix))
+@compiled
 def strike(
     addresses: Integers,
-    coefficients: Floats,
-    spheres: Floats,
-    states: Floats,
-    impulses: Floats,
-    ends: Floats,
+    coefficients: Matrix,
+    spheres: Matrix,
+    states: Matrix,
+    impulses: Vector,
+    ends: Matrix,
 ) -> None:
     """Write the states of B spheres after normal impulses without duration.
 

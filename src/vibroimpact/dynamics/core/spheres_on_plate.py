@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Cube, Matrix, Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.dormand_prince import STAGES
 from vibroimpact.dynamics.core.lying_sphere import (
@@ -44,23 +44,23 @@ there on [rad/s^2].
 """
 
 
-@compiled(lambda t: t.void(t.of(LyingSphere), t.matrix, t.real, t.matrix, t.vector))
+@compiled
 def write_at(
-    lying: LyingSphere, motion: Floats, time: float, stages: Floats, state: Floats
+    lying: LyingSphere, motion: Matrix, time: float, stages: Matrix, state: Vector
 ) -> None:
     """Write place, s, w and q (8,) at a time [s]."""
     row = motion[part_at(motion, time)]
     write_within(lying, row, time - row[BEGIN], stages, state)
 
 
-@compiled(lambda t: t.matrix(t.of(RubbedSphere), t.of(LyingSphere), t.matrix, t.real, t.pair))
+@compiled
 def twisted(
     sphere: RubbedSphere,
     lying: LyingSphere,
-    motion: Floats,
+    motion: Matrix,
     until: float,
     begun: tuple[float, float],
-) -> Floats:
+) -> Matrix:
     """Return the size of the spin about the normal up to a time [s] (K, 3); see `TIME`.
 
     `begun`: normal force [N], and the spin at the begin [rad/s].
@@ -110,16 +110,16 @@ def twisted(
     return falling[: point + 1]
 
 
-@compiled(lambda t: t.real(t.matrix, t.real))
-def spin_left(falling: Floats, time: float) -> float:
+@compiled
+def spin_left(falling: Matrix, time: float) -> float:
     """Return the size of the spin about the normal at a time [s]."""
     step = part_at(falling, time)
     elapsed = time - falling[step, TIME]
     return float(max(falling[step, LEFT] - falling[step, RATE] * elapsed, 0.0))
 
 
-@compiled(lambda t: t.of(SphereState)(t.of(RubbedSphere), t.vector, t.real))
-def lying_state(sphere: RubbedSphere, state: Floats, spin_z: float) -> SphereState:
+@compiled
+def lying_state(sphere: RubbedSphere, state: Vector, spin_z: float) -> SphereState:
     """Return the state of a sphere from place, s and w (6,)."""
     return SphereState(
         state[0],
@@ -132,7 +132,7 @@ def lying_state(sphere: RubbedSphere, state: Floats, spin_z: float) -> SphereSta
     )
 
 
-@compiled(lambda t: t.boolean(t.of(RubbedSphere), t.of(SphereState), t.real))
+@compiled
 def is_in_closed_form(sphere: RubbedSphere, begun: SphereState, pressing: float) -> bool:
     """Is the motion of a sphere known in closed form, from event to event?
 
@@ -143,15 +143,15 @@ def is_in_closed_form(sphere: RubbedSphere, begun: SphereState, pressing: float)
     return goes_along_line(lying_sphere(sphere, pressing, start), start) and not twists
 
 
-@compiled(lambda t: t.void(t.matrix, t.matrix, t.vector, t.pair, t.matrix, t.cube, t.cube))
+@compiled
 def lie_on_plate(
-    spheres: Floats,
-    starts: Floats,
-    pressing: Floats,
+    spheres: Matrix,
+    starts: Matrix,
+    pressing: Vector,
     half: tuple[float, float],
-    times: Floats,
-    states: Floats,
-    friction: Floats,
+    times: Matrix,
+    states: Cube,
+    friction: Cube,
 ) -> None:
     """Let B spheres lie on the plate, each on its own.
 

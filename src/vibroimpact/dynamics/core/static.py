@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-from vibroimpact.arrays import Floats, Integers
-from vibroimpact.compiled import compiled, energies_at, force_at
-from vibroimpact.dynamics.core.line_records import Address
+from vibroimpact.arrays import Integers, Vector
+from vibroimpact.compiled import Address, compiled, energies_at, force_at
 
 _FIRST = 1e-6  # m
 _TOLERANCE = 1e-14  # relative
@@ -16,9 +15,9 @@ _MOST_BOUNDS = 200  # each of them four times as far
 _MOST_HALVINGS = 200
 
 
-@compiled(lambda t: t.real(t.integers, t.vector, t.real, t.real))
+@compiled
 def static_indentation(
-    addresses: Integers, coefficients: Floats, release: float, weight: float
+    addresses: Integers, coefficients: Vector, release: float, weight: float
 ) -> float:
     """Return the indentation at which the static force of a law equals a weight [m].
 
@@ -60,9 +59,9 @@ def static_indentation(
     return bisected_indentation(addresses[0], coefficients, release, weight)
 
 
-@compiled(lambda t: t.real(t.address, t.vector, t.real, t.real))
+@compiled
 def bisected_indentation(
-    address: Address, coefficients: Floats, release: float, weight: float
+    address: Address, coefficients: Vector, release: float, weight: float
 ) -> float:
     """Return what `static_indentation` does, by bisection up to neighbouring numbers; `address`: of
     the force.

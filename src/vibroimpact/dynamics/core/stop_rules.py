@@ -18,7 +18,7 @@ AT_TIME, AFTER_IMPACTS, BESIDE_PLATE = range(3)
 """Kinds of rules; their values are a time [s], a number of impacts, and none."""
 
 
-@compiled(lambda t: t.boolean(t.real, t.real))
+@compiled
 def is_too_slow(speed: float, rest_speed: float) -> bool:
     """Does a sphere that separates at a speed [m/s] count as at rest? It does below the rest speed,
     or if it does not separate.
@@ -26,25 +26,25 @@ def is_too_slow(speed: float, rest_speed: float) -> bool:
     return speed < rest_speed or speed == 0.0
 
 
-@compiled(lambda t: t.real(t.real, t.of(FreeFall)))
+@compiled
 def end_at_time(time: float, flight: FreeFall) -> float:
     """Return the end of a run at a time [s], or after a contact that is under way then."""
     return max(time, flight.start)
 
 
-@compiled(lambda t: t.real(t.real, t.of(FreeFall), t.integer))
+@compiled
 def end_after_impacts(number: float, flight: FreeFall, impacts: int) -> float:
     """Return the end of a run after so many impacts [s], at the top of the rebound."""
     return min(flight.top, flight.touch) if impacts >= number else math.inf
 
 
-@compiled(lambda t: t.real(t.of(FreeFall)))
+@compiled
 def end_beside_plate(flight: FreeFall) -> float:
     """Return the end of a run where a sphere beside the plate is level with its surface [s]."""
     return flight.touch if flight.is_beside else math.inf
 
 
-@compiled(lambda t: t.real(t.integer, t.real, t.of(FreeFall), t.integer))
+@compiled
 def end_under(kind: int, value: float, flight: FreeFall, impacts: int) -> float:
     """Return when a rule of a kind ends a run [s]."""
     if kind == AT_TIME:
@@ -54,7 +54,7 @@ def end_under(kind: int, value: float, flight: FreeFall, impacts: int) -> float:
     return end_after_impacts(value, flight, impacts)
 
 
-@compiled(lambda t: t.tuple(t.real, t.integer)(t.of(StopRules), t.of(FreeFall), t.integer))
+@compiled
 def first_end(rules: StopRules, flight: FreeFall, impacts: int) -> tuple[float, int]:
     """Return when the first rule ends a run [s], and how it ends then.
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix, Vector
 from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.law import indentation_at, is_in_series, linearise
 from vibroimpact.dynamics.core.linear import (
@@ -51,9 +51,9 @@ _INEXACT = 1e-6
 _TINY = 1e-300
 
 
-@compiled(lambda t: t.void(t.of(Contacts), t.integer, t.vector, t.vector, t.matrix))
+@compiled
 def linearise_contact(
-    contacts: Contacts, contact: int, delta: Floats, rate: Floats, linear: Floats
+    contacts: Contacts, contact: int, delta: Vector, rate: Vector, linear: Matrix
 ) -> None:
     """Write forces, approach and derivatives of the law of one contact at N nodes into
     `linear` (7, N), as `law.linearise` does.
@@ -70,7 +70,7 @@ def linearise_contact(
     )
 
 
-@compiled(lambda t: t.real(t.of(Surfaces), t.of(Start), t.integer))
+@compiled
 def begun_rate(surfaces: Surfaces, start: Start, contact: int) -> float:
     """Return the rate at the dashpot of a contact law at the start without contact force [m/s]."""
     rate = start.outer_rate[contact]
@@ -79,8 +79,8 @@ def begun_rate(surfaces: Surfaces, start: Start, contact: int) -> float:
     return float(rate)
 
 
-@compiled(lambda t: t.vector(t.of(Contacts), t.of(Start), t.vector))
-def begun_indentations(contacts: Contacts, start: Start, estimates: Floats) -> Floats:
+@compiled
+def begun_indentations(contacts: Contacts, start: Start, estimates: Vector) -> Vector:
     """Return the indentations of the laws at the start [m] (c,) by one Newton step from
     close estimates.
     """
@@ -97,26 +97,15 @@ def begun_indentations(contacts: Contacts, start: Start, estimates: Floats) -> F
     return found
 
 
-@compiled(
-    lambda t: t.of(Nodes)(
-        t.of(Basis),
-        t.of(Surfaces),
-        t.of(Contacts),
-        t.of(Start),
-        t.of(Motion),
-        t.vector,
-        t.vector,
-        t.real,
-    )
-)
+@compiled
 def first_guess(
     basis: Basis,
     surfaces: Surfaces,
     contacts: Contacts,
     start: Start,
     motion: Motion,
-    begun: Floats,
-    trend: Floats,
+    begun: Vector,
+    trend: Vector,
     length: float,
 ) -> Nodes:
     """Return a guess of forces and indentations at the nodes, from the forces at the
@@ -166,7 +155,7 @@ def first_guess(
     return Nodes(static, force, delta)
 
 
-@compiled(lambda t: t.real(t.of(Surfaces), t.of(Motion), t.real))
+@compiled
 def force_scale(surfaces: Surfaces, motion: Motion, length: float) -> float:
     """Return a scale of the forces [N], for motions that change their rate within the stretch."""
     scale = 0.0
@@ -181,8 +170,8 @@ def force_scale(surfaces: Surfaces, motion: Motion, length: float) -> float:
     return scale
 
 
-@compiled(lambda t: t.matrix(t.of(Contacts), t.of(Motion), t.of(Nodes)))
-def linearised_laws(contacts: Contacts, motion: Motion, now: Nodes) -> Floats:
+@compiled
+def linearised_laws(contacts: Contacts, motion: Motion, now: Nodes) -> Matrix:
     """Return forces, approach and derivatives of all laws at the nodes (7, M), as
     `law.linearise` gives them.
     """
@@ -206,8 +195,8 @@ def linearised_laws(contacts: Contacts, motion: Motion, now: Nodes) -> Floats:
     return linear
 
 
-@compiled(lambda t: t.matrix(t.matrix, t.of(Motion), t.matrix))
-def indentations_by(linear: Floats, motion: Motion, columns: Floats) -> Floats:
+@compiled
+def indentations_by(linear: Matrix, motion: Motion, columns: Matrix) -> Matrix:
     """Return the changes of the indentations (M, r) for changes of the approach that
     forces do not cause [m] (M, r).
     """
@@ -227,8 +216,8 @@ def indentations_by(linear: Floats, motion: Motion, columns: Floats) -> Floats:
     return found
 
 
-@compiled(lambda t: t.void(t.matrix, t.of(Motion), t.matrix, t.matrix))
-def write_force_jacobian(linear: Floats, motion: Motion, by: Floats, matrix: Floats) -> None:
+@compiled
+def write_force_jacobian(linear: Matrix, motion: Motion, by: Matrix, matrix: Matrix) -> None:
     """Write the Jacobian of the equations in the forces, without the indentations, into the first
     rows and columns of `matrix`.
 
@@ -246,28 +235,17 @@ def write_force_jacobian(linear: Floats, motion: Motion, by: Floats, matrix: Flo
         matrix[row, row] += 1.0
 
 
-@compiled(
-    lambda t: t.tuple(t.vector, t.vector, t.real)(
-        t.of(Basis),
-        t.of(Surfaces),
-        t.of(Start),
-        t.of(Motion),
-        t.matrix,
-        t.of(Nodes),
-        t.real,
-        t.of(End),
-    )
-)
+@compiled
 def newton_step(
     basis: Basis,
     surfaces: Surfaces,
     start: Start,
     motion: Motion,
-    linear: Floats,
+    linear: Matrix,
     now: Nodes,
     length: float,
     end: End,
-) -> tuple[Floats, Floats, float]:
+) -> tuple[Vector, Vector, float]:
     r"""Return the Newton steps of the indentations, the forces (M,) and the length, to be
     subtracted.
 
@@ -361,19 +339,7 @@ def newton_step(
     return delta_step, force_step, length_step
 
 
-@compiled(
-    lambda t: t.tuple(t.of(Nodes), t.real, t.real, t.boolean)(
-        t.of(Basis),
-        t.of(Surfaces),
-        t.of(Contacts),
-        t.of(Start),
-        t.of(Motion),
-        t.of(Nodes),
-        t.real,
-        t.real,
-        t.of(End),
-    )
-)
+@compiled
 def improved(
     basis: Basis,
     surfaces: Surfaces,
@@ -419,8 +385,8 @@ def improved(
     return Nodes(static, force, delta), length, step_size, largest_magnitude_of(force) < np.inf
 
 
-@compiled(lambda t: t.real(t.matrix, t.matrix))
-def largest_change(now: Floats, before: Floats) -> float:
+@compiled
+def largest_change(now: Matrix, before: Matrix) -> float:
     """Return the largest change of the forces and moments of friction [N, N m]."""
     largest = 0.0
     for direction in range(len(now)):
@@ -429,7 +395,7 @@ def largest_change(now: Floats, before: Floats) -> float:
     return largest
 
 
-@compiled(lambda t: t.boolean(t.real, t.real))
+@compiled
 def is_converged(size: float, last_size: float) -> bool:
     """Is the next step of Newton's method below rounding, after two relative steps?
     Convergence is quadratic, but for the derivatives.
@@ -438,20 +404,7 @@ def is_converged(size: float, last_size: float) -> bool:
     return next_size < _CONVERGED or (size < _STALLED and size > 0.3 * last_size)
 
 
-@compiled(
-    lambda t: t.tuple(t.of(Nodes), t.of(Motions), t.of(FrictionAtNodes), t.real, t.boolean)(
-        t.of(Basis),
-        t.of(Surfaces),
-        t.of(Contacts),
-        t.of(Start),
-        t.of(SlidStretch),
-        t.of(Nodes),
-        t.of(Motions),
-        t.of(FrictionAtNodes),
-        t.real,
-        t.of(End),
-    )
-)
+@compiled
 def solve_stretch(
     basis: Basis,
     surfaces: Surfaces,

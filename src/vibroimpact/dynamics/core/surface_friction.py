@@ -31,7 +31,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix, Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.linear import write_row
 from vibroimpact.dynamics.core.receptance import modal_weights, surface_motion
@@ -67,7 +67,7 @@ from vibroimpact.dynamics.core.tangential_history import (
 )
 
 
-@compiled(lambda t: t.of(SlidingSphere)(t.of(SlidingSphere), t.real))
+@compiled
 def flown(sphere: SlidingSphere, time: float) -> SlidingSphere:
     """Return the friction after a time without contact force [s]."""
     displacement = np.empty(2)
@@ -110,11 +110,7 @@ def flown(sphere: SlidingSphere, time: float) -> SlidingSphere:
     )
 
 
-@compiled(
-    lambda t: t.tuple(t.of(ModalWeights), t.of(ModalWeights))(
-        t.of(Surfaces), t.of(Start), t.of(SlidStretch)
-    )
-)
+@compiled
 def weights_across_and_along(
     surfaces: Surfaces, start: Start, sliding: SlidStretch
 ) -> tuple[ModalWeights, ModalWeights]:
@@ -125,17 +121,7 @@ def weights_across_and_along(
     return across, modal_weights(sliding.surfaces, sliding.start)
 
 
-@compiled(
-    lambda t: t.of(Motions)(
-        t.of(Basis),
-        t.of(Surfaces),
-        t.of(Start),
-        t.of(SlidStretch),
-        t.of(ModalWeights),
-        t.of(ModalWeights),
-        t.real,
-    )
-)
+@compiled
 def free_motions(
     basis: Basis,
     surfaces: Surfaces,
@@ -156,7 +142,7 @@ def free_motions(
     )
 
 
-@compiled(lambda t: t.of(FrictionAtNodes)(t.of(SlidingSphere), t.integer))
+@compiled
 def first_friction(sphere: SlidingSphere, nodes: int) -> FrictionAtNodes:
     """Return the friction with which a stretch begins, at all of its nodes."""
     force = np.zeros((sphere.directions, nodes))
@@ -168,8 +154,8 @@ def first_friction(sphere: SlidingSphere, nodes: int) -> FrictionAtNodes:
     return FrictionAtNodes(force, sphere.history, np.zeros(0), none, none, np.zeros(0))
 
 
-@compiled(lambda t: t.of(Motion)(t.of(Motions), t.matrix))
-def under_friction(motions: Motions, friction: Floats) -> Motion:
+@compiled
+def under_friction(motions: Motions, friction: Matrix) -> Motion:
     """Return the motion of the surfaces across, with what friction forces at the nodes
     [N] move them.
     """
@@ -204,17 +190,13 @@ def under_friction(motions: Motions, friction: Floats) -> Motion:
     )
 
 
-@compiled(
-    lambda t: t.of(FrictionAtNodes)(
-        t.of(Basis), t.of(Motions), t.of(SlidStretch), t.real, t.vector, t.of(FrictionAtNodes)
-    )
-)
+@compiled
 def follow_friction(
     basis: Basis,
     motions: Motions,
     sliding: SlidStretch,
     length: float,
-    normal: Floats,
+    normal: Vector,
     before: FrictionAtNodes,
 ) -> FrictionAtNodes:
     """Return the friction at the nodes under normal forces there [N] (N,), from the displacements
@@ -266,17 +248,13 @@ def follow_friction(
     return FrictionAtNodes(force, history, pressed, friction, steps_moved, slid)
 
 
-@compiled(
-    lambda t: t.of(SlidingPart)(
-        t.of(Basis), t.of(Motions), t.of(SlidingSphere), t.real, t.vector, t.of(FrictionAtNodes)
-    )
-)
+@compiled
 def sliding_part(
     basis: Basis,
     motions: Motions,
     sphere: SlidingSphere,
     length: float,
-    normal: Floats,
+    normal: Vector,
     friction: FrictionAtNodes,
 ) -> SlidingPart:
     """Return what friction does through a solved stretch, under normal forces at its

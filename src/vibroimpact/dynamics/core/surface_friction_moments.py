@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix, Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.contact.friction.twisting import FULL_TWISTING, twisting_share
 from vibroimpact.dynamics.core.linear import product
@@ -32,8 +32,8 @@ from vibroimpact.dynamics.core.surface_friction_records import (
 from vibroimpact.dynamics.core.tangential_history import depth_under
 
 
-@compiled(lambda t: t.matrix(t.of(SlidingSphere), t.matrix))
-def slowing_spins(sphere: SlidingSphere, friction: Floats) -> Floats:
+@compiled
+def slowing_spins(sphere: SlidingSphere, friction: Matrix) -> Matrix:
     """Return by how much friction and its moments slow the spins of the sphere at the
     nodes [rad/s^2] (3, N).
     """
@@ -47,8 +47,8 @@ def slowing_spins(sphere: SlidingSphere, friction: Floats) -> Floats:
     return slowed
 
 
-@compiled(lambda t: t.matrix(t.of(Basis), t.of(SlidingSphere), t.real, t.matrix))
-def sphere_spins(basis: Basis, sphere: SlidingSphere, length: float, slowed: Floats) -> Floats:
+@compiled
+def sphere_spins(basis: Basis, sphere: SlidingSphere, length: float, slowed: Matrix) -> Matrix:
     """Return the spins of the sphere about -y, x and z at the nodes [rad/s] (3, N)."""
     nodes = len(basis.time)
     spins = np.empty((3, nodes))
@@ -59,7 +59,7 @@ def sphere_spins(basis: Basis, sphere: SlidingSphere, length: float, slowed: Flo
     return spins
 
 
-@compiled(lambda t: t.real(t.of(SlidingSphere), t.real, t.real, t.real, t.real))
+@compiled
 def twisting_moment(
     sphere: SlidingSphere, load: float, friction: float, slip: float, spin: float
 ) -> float:
@@ -75,16 +75,14 @@ def twisting_moment(
     )
 
 
-@compiled(
-    lambda t: t.void(t.of(Basis), t.of(Motions), t.of(SlidingSphere), t.real, t.vector, t.matrix)
-)
+@compiled
 def write_moments(
     basis: Basis,
     motions: Motions,
     sphere: SlidingSphere,
     length: float,
-    normal: Floats,
-    force: Floats,
+    normal: Vector,
+    force: Matrix,
 ) -> None:
     """Write the moments at the nodes [N m] beside friction into `force`: they act along
     the spins without them, and end with these.
@@ -141,7 +139,7 @@ def write_moments(
         force[ABOUT_NORMAL, node] *= twisting_left
 
 
-@compiled(lambda t: t.real(t.real, t.real))
+@compiled
 def share_left(left: float, lost: float) -> float:
     """Return the part of a moment after which nothing is left of a spin, of which `left`
     is there and it would take `lost`.
@@ -151,9 +149,9 @@ def share_left(left: float, lost: float) -> float:
     return 1.0
 
 
-@compiled(lambda t: t.real(t.of(Basis), t.of(SlidingSphere), t.real, t.matrix, t.matrix))
+@compiled
 def spin_imbalance(
-    basis: Basis, sphere: SlidingSphere, length: float, force: Floats, spins: Floats
+    basis: Basis, sphere: SlidingSphere, length: float, force: Matrix, spins: Matrix
 ) -> float:
     """Return the error of the balance of energy of the spins through a stretch [J]."""
     slowed = slowing_spins(sphere, force)
@@ -170,10 +168,10 @@ def spin_imbalance(
     return sphere.inertia * imbalance
 
 
-@compiled(lambda t: t.tuple(t.vector, t.vector)(t.of(Basis), t.of(SlidingSphere), t.real, t.matrix))
+@compiled
 def turned_after(
-    basis: Basis, sphere: SlidingSphere, length: float, force: Floats
-) -> tuple[Floats, Floats]:
+    basis: Basis, sphere: SlidingSphere, length: float, force: Matrix
+) -> tuple[Vector, Vector]:
     """Return what moments made of the spin [rad/s] (3,), and of the displacement [m]
     (2,), at the end of a stretch.
     """

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix, Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.linear import product
 from vibroimpact.dynamics.core.records import Basis
@@ -19,8 +19,8 @@ from vibroimpact.dynamics.core.surface_friction_records import (
 )
 
 
-@compiled(lambda t: t.matrix(t.vector, t.matrix, t.vector, t.matrix))
-def surface_along(free: Floats, by_force: Floats, normal: Floats, friction: Floats) -> Floats:
+@compiled
+def surface_along(free: Vector, by_force: Matrix, normal: Vector, friction: Matrix) -> Matrix:
     """Return what the surface below adds to displacements or velocities along it at the nodes (F,
     N), under forces there.
 
@@ -41,8 +41,8 @@ def surface_along(free: Floats, by_force: Floats, normal: Floats, friction: Floa
     return moved
 
 
-@compiled(lambda t: t.matrix(t.of(SlidingSphere), t.matrix))
-def slowing(sphere: SlidingSphere, friction: Floats) -> Floats:
+@compiled
+def slowing(sphere: SlidingSphere, friction: Matrix) -> Matrix:
     """Return by how much friction and its moments slow the contact point of the sphere at
     the nodes [m/s^2] (2, N).
     """
@@ -57,10 +57,10 @@ def slowing(sphere: SlidingSphere, friction: Floats) -> Floats:
     return slowed
 
 
-@compiled(lambda t: t.matrix(t.of(Basis), t.of(SlidingSphere), t.real, t.matrix))
+@compiled
 def sphere_displacements(
-    basis: Basis, sphere: SlidingSphere, length: float, slowed: Floats
-) -> Floats:
+    basis: Basis, sphere: SlidingSphere, length: float, slowed: Matrix
+) -> Matrix:
     """Return the displacements of the contact point of the sphere from the start to the
     nodes [m] (2, N).
     """
@@ -75,8 +75,8 @@ def sphere_displacements(
     return moved
 
 
-@compiled(lambda t: t.matrix(t.of(Basis), t.of(SlidingSphere), t.real, t.matrix))
-def sphere_velocities(basis: Basis, sphere: SlidingSphere, length: float, slowed: Floats) -> Floats:
+@compiled
+def sphere_velocities(basis: Basis, sphere: SlidingSphere, length: float, slowed: Matrix) -> Matrix:
     """Return the velocities of the contact point of the sphere at the nodes [m/s] (2, N)."""
     nodes = len(basis.time)
     velocities = np.empty((2, nodes))

@@ -1,13 +1,18 @@
 """What the core computes friction on surfaces that move with, in named tuples.
 
-The annotations name the types of compiled code, in `vibroimpact.compiler.types`.
+The annotations name the types of compiled code.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-from vibroimpact.dynamics.core.records import Integer, Matrix, Motion, Real, Start, Surfaces, Vector
+from vibroimpact.arrays import Matrix, Vector
+from vibroimpact.dynamics.core.records import (
+    Motion,
+    Start,
+    Surfaces,
+)
 from vibroimpact.dynamics.core.tangential_history import TangentialHistory
 
 AT_X, AT_Y, ROLLING_X, ROLLING_Y, ABOUT_NORMAL = range(5)
@@ -39,11 +44,11 @@ class SlidingSphere(NamedTuple):
     the contact slid [J]. history: of the contact.
     """
 
-    directions: Integer
-    rolling_coefficient: Real
-    mass: Real
-    radius: Real
-    inertia: Real
+    directions: int
+    rolling_coefficient: float
+    mass: float
+    radius: float
+    inertia: float
     pull: Vector
     velocity: Vector
     displacement: Vector
@@ -51,9 +56,9 @@ class SlidingSphere(NamedTuple):
     force: Vector
     turned: Vector
     turned_way: Vector
-    normal: Real
-    work: Real
-    microslip: Real
+    normal: float
+    work: float
+    microslip: float
     history: TangentialHistory
 
 
@@ -107,5 +112,5 @@ class SlidingPart(NamedTuple):
     force: Matrix
     slip: Matrix
     end: SlidingSphere
-    surface_work: Real
-    imbalance: Real
+    surface_work: float
+    imbalance: float

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix, Vector
 from vibroimpact.compiled import compiled, levels_at
 from vibroimpact.dynamics.core.attempt import place_at, time_at, weights_at
 from vibroimpact.dynamics.core.coasting import push_at
@@ -17,7 +17,13 @@ from vibroimpact.dynamics.core.flight import state_after
 from vibroimpact.dynamics.core.law import law_of
 from vibroimpact.dynamics.core.line_events import narrowed, secant_of
 from vibroimpact.dynamics.core.line_records import Bracket
-from vibroimpact.dynamics.core.records import TOUCH, Basis, Contacts, Matrix, State, System
+from vibroimpact.dynamics.core.records import (
+    TOUCH,
+    Basis,
+    Contacts,
+    State,
+    System,
+)
 from vibroimpact.dynamics.core.system_points import state_at, system_at
 from vibroimpact.dynamics.core.system_records import (
     APART,
@@ -39,7 +45,7 @@ _MOST_SECANTS = 100
 _ROUNDING = 1e-14  # of the length of a stretch
 
 
-@compiled(lambda t: t.real(t.of(Contacts), t.integer))
+@compiled
 def release_of(contacts: Contacts, contact: int) -> float:
     """Return the indentation at which a law releases [m], without what is in series with it."""
     levels = levels_at(contacts.addresses[4 * contact + 2])
@@ -47,7 +53,7 @@ def release_of(contacts: Contacts, contact: int) -> float:
     return float(release)
 
 
-@compiled(lambda t: t.real(t.of(SystemMarch), t.integer, t.integer, t.real, t.real, t.real))
+@compiled
 def event_value(
     march: SystemMarch, kind: int, contact: int, slack: float, approach: float, rate: float
 ) -> float:
@@ -65,10 +71,10 @@ def event_value(
     return push_at(law, approach, rate)
 
 
-@compiled(lambda t: t.vector(t.of(System), t.of(Group), t.of(State), t.matrix, t.real))
+@compiled
 def greatest_speeds(
     system: System, group: Group, start: State, velocities: Matrix, length: float
-) -> Floats:
+) -> Vector:
     """Return a bound of the speed of each coordinate of a system within a stretch (n,).
 
     Between the nodes it stays below a few times that at them.
@@ -88,18 +94,7 @@ def greatest_speeds(
     return fastest
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(Basis),
-        t.of(ContactPoints),
-        t.of(Group),
-        t.of(State),
-        t.matrix,
-        t.real,
-        t.integer,
-        t.matrix,
-    )
-)
+@compiled
 def write_motion(
     basis: Basis,
     points: ContactPoints,
@@ -108,7 +103,7 @@ def write_motion(
     velocities: Matrix,
     length: float,
     contact: int,
-    motion: Floats,
+    motion: Matrix,
 ) -> None:
     """Write the motion of a contact through a stretch of a group into `motion` (2, N + 4).
 
@@ -153,9 +148,9 @@ def write_motion(
             motion[1, node + 4] += of_contact.shape[index] * (velocity - faster)
 
 
-@compiled(lambda t: t.tuple(t.real, t.real)(t.of(Basis), t.matrix, t.real, t.real, t.vector))
+@compiled
 def motion_at(
-    basis: Basis, motion: Floats, length: float, x: float, weights: Floats
+    basis: Basis, motion: Matrix, length: float, x: float, weights: Vector
 ) -> tuple[float, float]:
     """Return approach [m] and rate [m/s] of a contact at x, from what `write_motion` wrote.
 
@@ -171,13 +166,11 @@ def motion_at(
     return approach, rate
 
 
-@compiled(
-    lambda t: t.real(t.of(Basis), t.of(SystemMarch), t.matrix, t.real, t.integer, t.integer, t.real)
-)
+@compiled
 def first_crossing(
     basis: Basis,
     march: SystemMarch,
-    motion: Floats,
+    motion: Matrix,
     length: float,
     kind: int,
     contact: int,
@@ -210,19 +203,7 @@ def first_crossing(
     return math.inf
 
 
-@compiled(
-    lambda t: t.of(OtherEvent)(
-        t.of(Basis),
-        t.of(System),
-        t.of(ContactPoints),
-        t.of(SystemMarch),
-        t.of(Group),
-        t.of(State),
-        t.matrix,
-        t.real,
-        t.real,
-    )
-)
+@compiled
 def first_other_event(
     basis: Basis,
     system: System,
@@ -277,19 +258,7 @@ def first_other_event(
     return first
 
 
-@compiled(
-    lambda t: t.tuple(t.real, t.real)(
-        t.of(Basis),
-        t.of(ContactPoints),
-        t.of(SystemMarch),
-        t.of(Group),
-        t.of(State),
-        t.matrix,
-        t.real,
-        t.real,
-        t.of(OtherEvent),
-    )
-)
+@compiled
 def value_at_end(
     basis: Basis,
     points: ContactPoints,

@@ -13,8 +13,8 @@ import math
 
 import numpy as np
 
-from vibroimpact.arrays import Bools, Floats, Integers
-from vibroimpact.compiled import compiled
+from vibroimpact.arrays import Bools, Integers, Vector
+from vibroimpact.compiled import Lent, compiled
 from vibroimpact.dynamics.core.attempt import attempt, balance_of, basis_of, time_at, up_to_event
 from vibroimpact.dynamics.core.coasting import end_of_coasting
 from vibroimpact.dynamics.core.contact import (
@@ -131,23 +131,13 @@ _MOST_LONGER = 1.01  # of the length of a stretch: no correction goes further
 _EXACT = 1e-13  # of the length of a stretch
 
 
-@compiled(
-    lambda t: t.integer(
-        t.lent(Bases),
-        t.lent(System),
-        t.lent(ContactPoints),
-        t.lent(SystemMarch),
-        t.lent(SystemParts),
-        t.of(SlidingSphere),
-        t.of(MarchManner),
-    )
-)
+@compiled
 def march_on(
-    bases: Bases,
-    system: System,
-    points: ContactPoints,
-    march: SystemMarch,
-    parts: SystemParts,
+    bases: Lent[Bases],
+    system: Lent[System],
+    points: Lent[ContactPoints],
+    march: Lent[SystemMarch],
+    parts: Lent[SystemParts],
     no_friction: SlidingSphere,
     manner: MarchManner,
 ) -> int:
@@ -194,7 +184,7 @@ def march_on(
     return ENDED
 
 
-@compiled(lambda t: t.integers(t.of(SystemMarch), t.integer))
+@compiled
 def contacts_in(march: SystemMarch, phase: int) -> Integers:
     """Return the numbers of the contacts in a phase."""
     count = 0
@@ -210,7 +200,7 @@ def contacts_in(march: SystemMarch, phase: int) -> Integers:
     return contacts
 
 
-@compiled(lambda t: t.boolean(t.integers, t.integers))
+@compiled
 def are_same(some: Integers, others: Integers) -> bool:
     """Are numbers the same as others?"""
     same = len(some) == len(others)
@@ -219,7 +209,7 @@ def are_same(some: Integers, others: Integers) -> bool:
     return bool(same)
 
 
-@compiled(lambda t: t.real(t.of(SystemMarch), t.integers))
+@compiled
 def shortest_span(march: SystemMarch, contacts: Integers) -> float:
     """Return the shortest duration of some contacts [s]."""
     span = math.inf
@@ -228,13 +218,13 @@ def shortest_span(march: SystemMarch, contacts: Integers) -> float:
     return span
 
 
-@compiled(lambda t: t.real(t.of(SystemMarch), t.real))
+@compiled
 def same_time(march: SystemMarch, length: float) -> float:
     """Return until when surfaces touch at the same time as after a length [s]."""
     return float(length + _SAME_TIME * (march.numbers[NOW] + length))
 
 
-@compiled(lambda t: t.of(Manner)(t.of(ContactPoints), t.of(SystemMarch), t.integer))
+@compiled
 def manner_of(points: ContactPoints, march: SystemMarch, contact: int) -> Manner:
     """Return what stays the same through an impact of a contact."""
     speed = march.of_contact[contact, MOTION_SPEED]
@@ -256,11 +246,7 @@ def manner_of(points: ContactPoints, march: SystemMarch, contact: int) -> Manner
 # -------------------------------------------------------------------------
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(System), t.of(ContactPoints), t.of(SystemMarch), t.of(SystemParts), t.real
-    )
-)
+@compiled
 def fly(
     system: System,
     points: ContactPoints,
@@ -306,17 +292,13 @@ def fly(
             begin_contact(points, march, parts, contact, in_dent[contact])
 
 
-@compiled(
-    lambda t: t.real(
-        t.of(ContactPoints), t.of(SystemMarch), t.of(State), t.real, t.vector, t.booleans
-    )
-)
+@compiled
 def first_touch(
     points: ContactPoints,
     march: SystemMarch,
     state: State,
     longest: float,
-    touches: Floats,
+    touches: Vector,
     in_dent: Bools,
 ) -> float:
     """Return when the first contact touches in free motion [s from here], at most `longest`.
@@ -352,9 +334,7 @@ def first_touch(
         longest = min(longest, touches[soonest])
 
 
-@compiled(
-    lambda t: t.boolean(t.of(ContactPoints), t.of(SystemMarch), t.of(State), t.integer, t.boolean)
-)
+@compiled
 def has_closed(
     points: ContactPoints, march: SystemMarch, before: State, contact: int, in_dent: bool
 ) -> bool:
@@ -370,24 +350,14 @@ def has_closed(
     return bool(earlier <= level <= now and rate > 0.0)
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(ContactPoints),
-        t.of(SystemMarch),
-        t.of(State),
-        t.integer,
-        t.real,
-        t.vector,
-        t.booleans,
-    )
-)
+@compiled
 def write_touch(
     points: ContactPoints,
     march: SystemMarch,
     state: State,
     contact: int,
     until: float,
-    touches: Floats,
+    touches: Vector,
     in_dent: Bools,
 ) -> None:
     """Write when a contact next touches in free motion [s from here], and whether in its dent."""
@@ -405,7 +375,7 @@ def write_touch(
     touches[contact] = next_touch(of_contact, now, level, until)
 
 
-@compiled(lambda t: t.void(t.of(ContactPoints), t.of(SystemMarch), t.of(State), t.of(State)))
+@compiled
 def lose_in_recoil(points: ContactPoints, march: SystemMarch, before: State, after: State) -> None:
     """Add to what is lost what recoiling contacts have lost between two states."""
     for contact in range(len(march.phase)):
@@ -417,7 +387,7 @@ def lose_in_recoil(points: ContactPoints, march: SystemMarch, before: State, aft
             march.lost[len(march.lost) - 1] += stored_energy(law, held) - stored_energy(law, left)
 
 
-@compiled(lambda t: t.void(t.of(SystemMarch), t.of(State), t.real))
+@compiled
 def advance(march: SystemMarch, state: State, length: float) -> None:
     """Advance to a state after a length [s]."""
     for coordinate in range(len(march.displacement)):
@@ -430,11 +400,7 @@ def advance(march: SystemMarch, state: State, length: float) -> None:
 # -------------------------------------------------------------------------
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(ContactPoints), t.of(SystemMarch), t.of(SystemParts), t.integer, t.boolean
-    )
-)
+@compiled
 def begin_contact(
     points: ContactPoints,
     march: SystemMarch,
@@ -479,7 +445,7 @@ def begin_contact(
     march.numbers[NEXT_LENGTH] = min(march.numbers[NEXT_LENGTH], FIRST_LENGTH * numbers[SPAN])
 
 
-@compiled(lambda t: t.void(t.of(ContactPoints), t.of(SystemMarch), t.of(SystemParts), t.integer))
+@compiled
 def end_contact(
     points: ContactPoints, march: SystemMarch, parts: SystemParts, contact: int
 ) -> None:
@@ -498,11 +464,7 @@ def end_contact(
     march.phase[contact] = APART
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(ContactPoints), t.of(SystemMarch), t.of(SystemParts), t.integer, t.boolean
-    )
-)
+@compiled
 def end_recoil(
     points: ContactPoints,
     march: SystemMarch,
@@ -521,9 +483,7 @@ def end_recoil(
     march.of_contact[contact, TREND] = 0.0
 
 
-@compiled(
-    lambda t: t.void(t.of(ContactPoints), t.of(SystemMarch), t.of(SystemParts), t.integer, t.real)
-)
+@compiled
 def separate(
     points: ContactPoints, march: SystemMarch, parts: SystemParts, contact: int, delta: float
 ) -> None:
@@ -537,7 +497,7 @@ def separate(
     end_contact(points, march, parts, contact)
 
 
-@compiled(lambda t: t.void(t.of(SystemMarch), t.of(SystemParts), t.integer))
+@compiled
 def remember(march: SystemMarch, parts: SystemParts, contact: int) -> None:
     """Update the memory of a law with its largest indentation."""
     law = law_of(march.acting, contact)
@@ -548,7 +508,7 @@ def remember(march: SystemMarch, parts: SystemParts, contact: int) -> None:
     march.acting_law[contact] = write_law(parts, contact, march.acting_law[contact], delta, changed)
 
 
-@compiled(lambda t: t.boolean(t.of(ContactPoints), t.of(SystemMarch), t.integer))
+@compiled
 def separates_then(points: ContactPoints, march: SystemMarch, contact: int) -> bool:
     """Does a contact end now that its force is zero? Otherwise it recoils."""
     return separates_at_no_force(
@@ -559,9 +519,7 @@ def separates_then(points: ContactPoints, march: SystemMarch, contact: int) -> b
     )
 
 
-@compiled(
-    lambda t: t.boolean(t.of(ContactPoints), t.of(SystemMarch), t.of(SystemParts), t.integers)
-)
+@compiled
 def has_ended_at_once(
     points: ContactPoints, march: SystemMarch, parts: SystemParts, pushing: Integers
 ) -> bool:
@@ -600,11 +558,7 @@ def has_ended_at_once(
 # -------------------------------------------------------------------------
 
 
-@compiled(
-    lambda t: t.of(Beginning)(
-        t.of(ContactPoints), t.of(SystemMarch), t.of(Group), t.of(SlidingSphere)
-    )
-)
+@compiled
 def beginning_of_group(
     points: ContactPoints, march: SystemMarch, group: Group, no_friction: SlidingSphere
 ) -> Beginning:
@@ -624,7 +578,7 @@ def beginning_of_group(
     return Beginning(state, start, laws, delta, sliding)
 
 
-@compiled(lambda t: t.of(Manner)(t.of(ContactPoints), t.of(SystemMarch), t.of(Group), t.real))
+@compiled
 def manner_of_group(
     points: ContactPoints, march: SystemMarch, group: Group, tolerance: float
 ) -> Manner:
@@ -651,19 +605,7 @@ def manner_of_group(
     )
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(Bases),
-        t.of(System),
-        t.of(ContactPoints),
-        t.of(SystemMarch),
-        t.of(SystemParts),
-        t.of(Group),
-        t.of(SlidingSphere),
-        t.real,
-        t.real,
-    )
-)
+@compiled
 def go_through_stretch(
     bases: Bases,
     system: System,
@@ -757,21 +699,7 @@ def go_through_stretch(
     act(points, march, parts, state, other, slack)
 
 
-@compiled(
-    lambda t: t.tuple(t.boolean, t.of(Attempt), t.of(Balance))(
-        t.of(Basis),
-        t.of(ContactPoints),
-        t.of(SystemMarch),
-        t.of(Group),
-        t.of(Manner),
-        t.of(Beginning),
-        t.vector,
-        t.of(Attempt),
-        t.of(Balance),
-        t.of(OtherEvent),
-        t.real,
-    )
-)
+@compiled
 def up_to_other_event(
     basis: Basis,
     points: ContactPoints,
@@ -779,7 +707,7 @@ def up_to_other_event(
     group: Group,
     manner: Manner,
     beginning: Beginning,
-    trend: Floats,
+    trend: Vector,
     whole: Attempt,
     balance: Balance,
     other: OtherEvent,
@@ -813,18 +741,7 @@ def up_to_other_event(
     return ended.event.kind == NO_EVENT, ended, balance
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(System),
-        t.of(ContactPoints),
-        t.of(SystemMarch),
-        t.of(SystemParts),
-        t.of(Basis),
-        t.of(Group),
-        t.of(Attempt),
-        t.of(Balance),
-    )
-)
+@compiled
 def accept(
     system: System,
     points: ContactPoints,
@@ -870,11 +787,7 @@ def accept(
     advance(march, after, solved.length)
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(ContactPoints), t.of(SystemMarch), t.of(SystemParts), t.integer, t.integer
-    )
-)
+@compiled
 def end_at_event(
     points: ContactPoints, march: SystemMarch, parts: SystemParts, contact: int, kind: int
 ) -> None:
@@ -887,16 +800,7 @@ def end_at_event(
         remember(march, parts, contact)
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(ContactPoints),
-        t.of(SystemMarch),
-        t.of(SystemParts),
-        t.of(State),
-        t.of(OtherEvent),
-        t.real,
-    )
-)
+@compiled
 def act(
     points: ContactPoints,
     march: SystemMarch,

@@ -41,7 +41,7 @@ from vibroimpact.dynamics.core.system_records import (
 _NEAR = 0.98
 
 
-@compiled(lambda t: t.boolean(t.of(SystemParts), t.integer))
+@compiled
 def has_room(parts: SystemParts, contacts: int) -> bool:
     """Is there room for a further part of a system of so many contacts, and for what follows it?
 
@@ -55,7 +55,7 @@ def has_room(parts: SystemParts, contacts: int) -> bool:
     )
 
 
-@compiled(lambda t: t.integer(t.of(SystemParts), t.integer, t.integer, t.real, t.of(Law)))
+@compiled
 def write_law(parts: SystemParts, contact: int, origin: int, compressed: float, law: Law) -> int:
     """Write a law of a contact, and return its number; `origin`, `compressed`: of `SystemParts`."""
     number = parts.written[LAWS]
@@ -67,7 +67,7 @@ def write_law(parts: SystemParts, contact: int, origin: int, compressed: float, 
     return int(number)
 
 
-@compiled(lambda t: t.integer(t.of(SystemParts), t.integer, t.real, t.real))
+@compiled
 def add_impact(parts: SystemParts, contact: int, start: float, closing: float) -> int:
     """Add an impact of a contact, which starts at a time [s] with a closing speed [m/s]; return its
     row.
@@ -84,7 +84,7 @@ def add_impact(parts: SystemParts, contact: int, start: float, closing: float) -
     return int(row)
 
 
-@compiled(lambda t: t.void(t.of(SystemParts), t.of(SystemMarch), t.integer, t.real))
+@compiled
 def write_part(parts: SystemParts, march: SystemMarch, kind: int, length: float) -> None:
     """Write what all parts have: their kind, length [s], and where they begin."""
     part = parts.written[PARTS]
@@ -98,7 +98,7 @@ def write_part(parts: SystemParts, march: SystemMarch, kind: int, length: float)
     parts.written[PARTS] = part + 1
 
 
-@compiled(lambda t: t.integer(t.of(SystemParts), t.of(SystemMarch), t.integer))
+@compiled
 def add_row(parts: SystemParts, march: SystemMarch, contact: int) -> int:
     """Add a contact to the last part, and return its row."""
     row = parts.written[ROWS]
@@ -110,7 +110,7 @@ def add_row(parts: SystemParts, march: SystemMarch, contact: int) -> int:
     return int(row)
 
 
-@compiled(lambda t: t.void(t.of(SystemParts), t.of(SystemMarch), t.real))
+@compiled
 def write_flight(parts: SystemParts, march: SystemMarch, length: float) -> None:
     """Write a motion without contact force of a length [s], with the contacts that recoil."""
     write_part(parts, march, FLIGHT, length)
@@ -119,16 +119,7 @@ def write_flight(parts: SystemParts, march: SystemMarch, length: float) -> None:
             add_row(parts, march, contact)
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(SystemParts),
-        t.of(SystemMarch),
-        t.of(Basis),
-        t.of(Group),
-        t.of(Attempt),
-        t.of(Balance),
-    )
-)
+@compiled
 def write_stretch(
     parts: SystemParts,
     march: SystemMarch,
@@ -155,7 +146,7 @@ def write_stretch(
         parts.dissipated[row] = solved.contact.dissipated[index]
 
 
-@compiled(lambda t: t.void(t.of(SystemParts), t.of(SystemMarch), t.of(Basis), t.integer))
+@compiled
 def write_peaks(parts: SystemParts, march: SystemMarch, basis: Basis, row: int) -> None:
     """Add a row of the last part to the largest force, the largest indentation and the impulse of
     its impact.
@@ -188,7 +179,7 @@ def write_peaks(parts: SystemParts, march: SystemMarch, basis: Basis, row: int) 
     impact[IMPULSE] += parts.length[part] * mean
 
 
-@compiled(lambda t: t.void(t.of(SystemParts), t.of(SystemMarch), t.integer, t.real))
+@compiled
 def lose_stored(parts: SystemParts, march: SystemMarch, contact: int, stored: float) -> None:
     """Add the energy that a contact stored [J] to what is lost at the end of the last part."""
     march.lost[len(march.lost) - 1] += stored

@@ -16,7 +16,7 @@ _RIGID_ROUNDING = 2e-15
 _ROUNDING = 2e-14
 
 
-@compiled(lambda t: t.of(System)(t.of(ContactPoints), t.integer))
+@compiled
 def system_at(points: ContactPoints, contact: int) -> System:
     """Return the coordinates that move one of the contacts, as a system of its own."""
     begin = points.first[contact]
@@ -43,7 +43,7 @@ def system_at(points: ContactPoints, contact: int) -> System:
     )
 
 
-@compiled(lambda t: t.of(State)(t.integers, t.of(State)))
+@compiled
 def state_of(coordinates: Integers, state: State) -> State:
     """Return the state of some coordinates of a system."""
     displacement = np.empty(len(coordinates))
@@ -54,7 +54,7 @@ def state_of(coordinates: Integers, state: State) -> State:
     return State(displacement, velocity, np.empty(0))
 
 
-@compiled(lambda t: t.of(State)(t.of(ContactPoints), t.integer, t.of(State)))
+@compiled
 def state_at(points: ContactPoints, contact: int, state: State) -> State:
     """Return the state of the coordinates that move one of the contacts."""
     begin = points.first[contact]
@@ -62,13 +62,13 @@ def state_at(points: ContactPoints, contact: int, state: State) -> State:
     return state_of(points.coordinate[begin:end], state)
 
 
-@compiled(lambda t: t.of(State)(t.of(SystemMarch)))
+@compiled
 def state_now(march: SystemMarch) -> State:
     """Return the state of a march, which changes with it."""
     return State(march.displacement, march.velocity, np.empty(0))
 
 
-@compiled(lambda t: t.of(Group)(t.of(ContactPoints), t.integers, t.integer))
+@compiled
 def group_of(points: ContactPoints, contacts: Integers, number: int) -> Group:
     """Return some contacts of a system of `number` coordinates as a group."""
     place = np.full(number, -1)
@@ -145,7 +145,7 @@ def group_of(points: ContactPoints, contacts: Integers, number: int) -> Group:
     return Group(contacts, coordinates, place, bodies)
 
 
-@compiled(lambda t: t.of(Start)(t.of(ContactPoints), t.of(Group), t.of(State)))
+@compiled
 def start_of(points: ContactPoints, group: Group, state: State) -> Start:
     """Return the state of the surfaces of a group; `state`: that of its coordinates."""
     shapes = group.bodies.surfaces.shapes

@@ -1,17 +1,17 @@
 """What the core follows systems of several bodies with, in named tuples.
 
-The annotations name the types of compiled code, in `vibroimpact.compiler.types`.
+The annotations name the types of compiled code.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
-from vibroimpact.arrays import Bools, Integers
+from vibroimpact.arrays import Bools, Integers, Matrix, Vector
 from vibroimpact.dynamics.core.contact_records import Bodies
-from vibroimpact.dynamics.core.records import Contacts, Integer, Matrix, Real, Vector
-
-Booleans: TypeAlias = Bools
+from vibroimpact.dynamics.core.records import (
+    Contacts,
+)
 
 
 class ContactPoints(NamedTuple):
@@ -39,7 +39,7 @@ class ContactPoints(NamedTuple):
     compliance: Vector
     flexibility: Vector
     contact_end: Integers
-    keeps_memory: Booleans
+    keeps_memory: Bools
 
 
 class Group(NamedTuple):
@@ -94,13 +94,13 @@ class SystemMarch(NamedTuple):
     velocity: Vector
     lost: Vector
     phase: Integers
-    is_fresh: Booleans
+    is_fresh: Bools
     impact: Integers
     of_contact: Matrix
     acting: Contacts
     upcoming: Contacts
     dents: Contacts
-    has_dent: Booleans
+    has_dent: Bools
     acting_law: Integers
     upcoming_law: Integers
     dent_law: Integers
@@ -172,9 +172,9 @@ class MarchManner(NamedTuple):
     how many stretches and flights it pauses.
     """
 
-    tolerance: Real
-    until: Real
-    pause: Integer
+    tolerance: float
+    until: float
+    pause: int
 
 
 class OtherEvent(NamedTuple):
@@ -182,6 +182,6 @@ class OtherEvent(NamedTuple):
     contact and x, where it lies in the stretch.
     """
 
-    kind: Integer
-    contact: Integer
-    x: Real
+    kind: int
+    contact: int
+    x: float

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix, Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.attempt import basis_of, surface_start
 from vibroimpact.dynamics.core.contact_records import Bodies, Solved
@@ -25,12 +25,10 @@ from vibroimpact.dynamics.core.stretch import (
 )
 
 
-@compiled(
-    lambda t: t.tuple(t.vector, t.vector)(t.of(Motion), t.matrix, t.vector, t.vector, t.vector)
-)
+@compiled
 def force_differences(
-    motion: Motion, linear: Floats, approach: Floats, static: Floats, dissipative: Floats
-) -> tuple[Floats, Floats]:
+    motion: Motion, linear: Matrix, approach: Vector, static: Vector, dissipative: Vector
+) -> tuple[Vector, Vector]:
     """Return the differences of the contact forces and of their static parts at the nodes [N] (M,).
 
     Parameters
@@ -71,14 +69,10 @@ def force_differences(
     return force, static_difference
 
 
-@compiled(
-    lambda t: t.tuple(t.of(State), t.matrix)(
-        t.of(Bases), t.of(Bodies), t.of(Contacts), t.vector, t.of(Solved), t.of(State)
-    )
-)
+@compiled
 def propagate(
-    bases: Bases, bodies: Bodies, laws: Contacts, weights: Floats, solved: Solved, difference: State
-) -> tuple[State, Floats]:
+    bases: Bases, bodies: Bodies, laws: Contacts, weights: Vector, solved: Solved, difference: State
+) -> tuple[State, Matrix]:
     """Return the difference of the state at the end of stretches of one contact, and of the contact
     force at their nodes [N] (P, N).
 

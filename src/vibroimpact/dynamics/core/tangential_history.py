@@ -21,9 +21,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Matrix, Vector
 from vibroimpact.compiled import compiled
-from vibroimpact.dynamics.core.records import Boolean, Matrix, Real, Vector
 
 SPRINGS = 200
 """Springs in the radius of the largest contact: the friction force is then within 1e-4 of
@@ -47,27 +46,25 @@ class TangentialHistory(NamedTuple):
     to here [m]; nothing if a part of it sticks.
     """
 
-    at_rim: Boolean
-    growing: Real
-    shrinking: Real
-    hertz: Real
-    radius: Real
-    stiffness: Real
-    coefficient: Real
-    ratio: Real
-    sliding_energy: Real
-    width: Real
-    depth: Real
+    at_rim: bool
+    growing: float
+    shrinking: float
+    hertz: float
+    radius: float
+    stiffness: float
+    coefficient: float
+    ratio: float
+    sliding_energy: float
+    width: float
+    depth: float
     stretch: Matrix
     force: Vector
-    slid: Real
+    slid: float
 
 
-@compiled(
-    lambda t: t.of(TangentialHistory)(t.of(TangentialHistory), t.real, t.matrix, t.vector, t.real)
-)
+@compiled
 def with_state(
-    history: TangentialHistory, depth: float, stretch: Floats, force: Floats, slid: float
+    history: TangentialHistory, depth: float, stretch: Matrix, force: Vector, slid: float
 ) -> TangentialHistory:
     """Return a history with another state."""
     return TangentialHistory(
@@ -88,20 +85,16 @@ def with_state(
     )
 
 
-@compiled(lambda t: t.real(t.of(TangentialHistory), t.real, t.real))
+@compiled
 def pressed_up_to(history: TangentialHistory, place: float, depth: float) -> float:
     """Return the integral of D - x^2/R up to a place x [m^2]."""
     return float(place * (depth - place * place / (3.0 * history.radius)))
 
 
-@compiled(
-    lambda t: t.tuple(t.real, t.real, t.real)(
-        t.of(TangentialHistory), t.matrix, t.real, t.real, t.real, t.real
-    )
-)
+@compiled
 def move_springs(
     history: TangentialHistory,
-    stretch: Floats,
+    stretch: Matrix,
     before: float,
     depth: float,
     moved_x: float,
@@ -158,8 +151,8 @@ def move_springs(
     return history.stiffness * force_x, history.stiffness * force_y, slid
 
 
-@compiled(lambda t: t.matrix(t.of(TangentialHistory), t.real))
-def springs_for(history: TangentialHistory, depth: float) -> Floats:
+@compiled
+def springs_for(history: TangentialHistory, depth: float) -> Matrix:
     """Return the stretch of the springs, with room for those of a contact of a depth [m]."""
     number = int(math.sqrt(history.radius * depth) / history.width) + 1
     known = history.stretch.shape[1]
@@ -170,9 +163,7 @@ def springs_for(history: TangentialHistory, depth: float) -> Floats:
     return stretch
 
 
-@compiled(
-    lambda t: t.of(TangentialHistory)(t.of(TangentialHistory), t.real, t.real, t.real, t.real)
-)
+@compiled
 def spring_after(
     history: TangentialHistory, depth: float, most: float, moved_x: float, moved_y: float
 ) -> TangentialHistory:
@@ -199,13 +190,13 @@ def spring_after(
     return with_state(history, depth, history.stretch, force, slid)
 
 
-@compiled(lambda t: t.real(t.of(TangentialHistory), t.real))
+@compiled
 def depth_under(history: TangentialHistory, normal_force: float) -> float:
     """Return the depth of Hertz's contact under a normal force [m]."""
     return float((max(normal_force, 0.0) / history.hertz) ** (2.0 / 3.0))
 
 
-@compiled(lambda t: t.of(TangentialHistory)(t.of(TangentialHistory), t.real, t.real, t.real))
+@compiled
 def history_after(
     history: TangentialHistory, normal_force: float, moved_x: float, moved_y: float
 ) -> TangentialHistory:
@@ -225,13 +216,9 @@ def history_after(
     return with_state(history, depth, stretch, force, slid)
 
 
-@compiled(
-    lambda t: t.of(TangentialHistory)(
-        t.of(TangentialHistory), t.vector, t.matrix, t.matrix, t.vector
-    )
-)
+@compiled
 def follow_history(
-    history: TangentialHistory, normal: Floats, moved: Floats, friction: Floats, slid: Floats
+    history: TangentialHistory, normal: Vector, moved: Matrix, friction: Matrix, slid: Vector
 ) -> TangentialHistory:
     """Return the history at the end of a way of T steps.
 
@@ -272,7 +259,7 @@ def follow_history(
     return with_state(history, before, stretch, friction[last].copy(), slid[last])
 
 
-@compiled(lambda t: t.real(t.of(TangentialHistory), t.real))
+@compiled
 def energy_in_sliding(history: TangentialHistory, load: float) -> float:
     """Return the work that stretches a contact along the plate, while all of it slides up
     to a normal force [J].
@@ -286,9 +273,9 @@ def energy_in_sliding(history: TangentialHistory, load: float) -> float:
     )
 
 
-@compiled(lambda t: t.real(t.of(TangentialHistory), t.vector, t.matrix, t.matrix, t.vector))
+@compiled
 def lost_in_microslip(
-    history: TangentialHistory, normal: Floats, friction: Floats, moved: Floats, slid: Floats
+    history: TangentialHistory, normal: Vector, friction: Matrix, moved: Matrix, slid: Vector
 ) -> float:
     """Return what friction took on a way of T steps [J], but while all of the contact slid.
 

@@ -24,7 +24,7 @@ _SAMPLES = 32
 _ROUNDING = 4e-16  # of the sum of the magnitudes of the terms of an approach, or of a time
 
 
-@compiled(lambda t: t.of(Approach)(t.of(System), t.of(State)))
+@compiled
 def approach_in(system: System, state: State) -> Approach:
     """Return the approach of the surfaces in a state, and bounds of what the vibration
     adds to it.
@@ -58,7 +58,7 @@ def approach_in(system: System, state: State) -> Approach:
     )
 
 
-@compiled(lambda t: t.real(t.real, t.real, t.real, t.real))
+@compiled
 def fall_time(approach: float, speed: float, gravity: float, level: float) -> float:
     """Return when a rigid approach reaches a level [s] under gravity; 0 if it already
     has, infinite if it never will.
@@ -75,7 +75,7 @@ def fall_time(approach: float, speed: float, gravity: float, level: float) -> fl
     return 2.0 * height / (root + speed) if speed > 0.0 else (root - speed) / gravity
 
 
-@compiled(lambda t: t.real(t.of(Approach), t.real, t.real))
+@compiled
 def time_apart(now: Approach, level: float, gravity: float) -> float:
     r"""Return how long surfaces surely stay apart [s], under a bound of the acceleration of the
     approach by what is not vibration [m/s^2].
@@ -98,19 +98,19 @@ def time_apart(now: Approach, level: float, gravity: float) -> float:
     return max(far, near)
 
 
-@compiled(lambda t: t.boolean(t.of(Approach), t.real, t.real))
+@compiled
 def is_touch(now: Approach, level: float, time: float) -> bool:
     """Is a gap closed to the rounding error of the time since the start [s]?"""
     return time > 0.0 and now.rate >= 0.0 and level - now.approach <= _ROUNDING * now.rate * time
 
 
-@compiled(lambda t: t.boolean(t.of(Approach), t.real))
+@compiled
 def is_closing(now: Approach, level: float) -> bool:
     """Is a gap about to close where the time cannot tell any more?"""
     return level - now.approach <= 1e-12 * now.reach or now.rate >= 0.0
 
 
-@compiled(lambda t: t.boolean(t.of(Approach), t.real))
+@compiled
 def is_apart(now: Approach, level: float) -> bool:
     """Do surfaces not overlap beyond a level, or by no more than a rounding error where
     they separate?
@@ -118,13 +118,13 @@ def is_apart(now: Approach, level: float) -> bool:
     return now.approach <= level + (_ROUNDING * now.terms if now.rate < 0.0 else 0.0)
 
 
-@compiled(lambda t: t.boolean(t.of(Approach), t.real, t.real))
+@compiled
 def never_separates(now: Approach, level: float, gravity: float) -> bool:
     """Does the rigid motion close beyond the range of the vibration?"""
     return gravity >= 0.0 and now.rigid_rate >= 0.0 and now.rigid - now.reach > level
 
 
-@compiled(lambda t: t.boolean(t.of(Approach), t.real, t.real))
+@compiled
 def never_returns(now: Approach, level: float, gravity: float) -> bool:
     """Does the rigid motion open beyond the range of the vibration, with no gravity that
     turns it? What slows it in a fluid does not.
@@ -132,7 +132,7 @@ def never_returns(now: Approach, level: float, gravity: float) -> bool:
     return gravity <= 0.0 and now.rigid_rate <= 0.0 and now.rigid + now.reach < level
 
 
-@compiled(lambda t: t.real(t.of(System), t.of(State), t.real))
+@compiled
 def time_to_separation(system: System, state: State, level: float) -> float:
     """Return when surfaces that overlap beyond a level separate to it [s]; 0 if they do
     not overlap, infinite if they never separate.
@@ -161,7 +161,7 @@ def time_to_separation(system: System, state: State, level: float) -> float:
     return np.inf
 
 
-@compiled(lambda t: t.real(t.of(Approach), t.real, t.real, t.real))
+@compiled
 def next_horizon(now: Approach, level: float, horizon: float, before: float) -> float:
     """Return for how long to look for a separation [s]: to about twice that time, or longer than
     the last horizon if that changed nothing.
@@ -174,7 +174,7 @@ def next_horizon(now: Approach, level: float, horizon: float, before: float) -> 
     return 2.0 * (now.approach - level) / abs(now.rate) if now.rate != 0.0 else 1e-6
 
 
-@compiled(lambda t: t.real(t.of(System), t.of(State), t.real, t.real))
+@compiled
 def next_touch(system: System, state: State, level: float, until: float) -> float:
     """Return when the approach first rises to a level [s from here]; infinite if not before
     `until`.

@@ -51,7 +51,7 @@ _MOST_SHARE = 2.0
 """How far H is extended from the last piece of a curve, in lengths of it from its lower end."""
 
 
-@compiled(lambda t: t.of(Curve)(t.integer))
+@compiled
 def new_curve(room: int) -> Curve:
     """Return the curve of a contact before first touch: one point, with room for others.
 
@@ -70,7 +70,7 @@ def new_curve(room: int) -> Curve:
     return Curve(np.zeros((room, 3)), np.zeros(2, np.int64))
 
 
-@compiled(lambda t: t.void(t.of(Curve), t.integer, t.real, t.real, t.real))
+@compiled
 def put_rim(curve: Curve, point: int, depth: float, displacement: float, integral: float) -> None:
     """Make a point of a curve its last."""
     curve.points[point, DEPTH] = depth
@@ -79,25 +79,25 @@ def put_rim(curve: Curve, point: int, depth: float, displacement: float, integra
     curve.top[RIM] = point
 
 
-@compiled(lambda t: t.void(t.of(Curve), t.real, t.real, t.real))
+@compiled
 def add_rim(curve: Curve, depth: float, displacement: float, integral: float) -> None:
     """Add the present rim of a contact to its curve."""
     put_rim(curve, curve.top[RIM] + 1, depth, displacement, integral)
 
 
-@compiled(lambda t: t.void(t.of(Curve)))
+@compiled
 def begin_at_rim(curve: Curve) -> None:
     """Let a contact begin to slip at its rim."""
     curve.top[BELOW] = max(curve.top[RIM] - 1, 0)
 
 
-@compiled(lambda t: t.real(t.of(Curve), t.real))
+@compiled
 def middle_of(curve: Curve, direction: float) -> float:
     """Return the x below which all of a contact slides [m]."""
     return float(-direction * curve.points[0, DISPLACEMENT])
 
 
-@compiled(lambda t: t.pair(t.of(Curve), t.real, t.real))
+@compiled
 def held_at(curve: Curve, direction: float, x: float) -> tuple[float, float]:
     """Return H of a contact that slips [m^1.5], and its derivative, the root of the depth at which
     the slip ends [m^0.5].
@@ -130,7 +130,7 @@ def held_at(curve: Curve, direction: float, x: float) -> tuple[float, float]:
     return linear + excess * share * share * (3.0 - 2.0 * share), root
 
 
-@compiled(lambda t: t.void(t.of(Curve), t.real, t.real, t.real, t.real, t.real, t.real))
+@compiled
 def end_slip(
     curve: Curve,
     direction: float,

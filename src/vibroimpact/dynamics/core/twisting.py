@@ -11,10 +11,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.contact.friction.twisting import FULL_TWISTING, twisting_share
-from vibroimpact.dynamics.core.records import Real
 
 
 class Twisting(NamedTuple):
@@ -24,18 +23,18 @@ class Twisting(NamedTuple):
     with the cube root of the force; zero where it is a point.
     """
 
-    coefficient: Real
-    radius: Real
+    coefficient: float
+    radius: float
 
 
-@compiled(lambda t: t.real(t.of(Twisting), t.real))
+@compiled
 def full_moment(twisting: Twisting, force: float) -> float:
     """Return the moment of full twisting under a normal force [N m]."""
     radius = twisting.radius * force ** (1.0 / 3.0)
     return float(FULL_TWISTING * twisting.coefficient * force * radius)
 
 
-@compiled(lambda t: t.real(t.of(Twisting), t.real, t.real, t.real, t.real))
+@compiled
 def moment_share(
     twisting: Twisting, force: float, friction: float, slip: float, spin: float
 ) -> float:
@@ -58,7 +57,7 @@ def moment_share(
     return float(twisting_share(radius * spin, slip, used))
 
 
-@compiled(lambda t: t.pair(t.of(Twisting), t.real, t.real, t.real, t.real, t.real, t.real))
+@compiled
 def slowed_spin(
     twisting: Twisting,
     spin: float,
@@ -89,20 +88,16 @@ def slowed_spin(
     return 0.5 * (share + share_after) * full, share_after
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(Twisting), t.real, t.real, t.vector, t.vector, t.vector, t.vector, t.vector
-    )
-)
+@compiled
 def slow_spin(
     twisting: Twisting,
     spin: float,
     inertia: float,
-    time: Floats,
-    force: Floats,
-    friction: Floats,
-    slip: Floats,
-    spins: Floats,
+    time: Vector,
+    force: Vector,
+    friction: Vector,
+    slip: Vector,
+    spins: Vector,
 ) -> None:
     """Write the size of a spin at G points of time.
 

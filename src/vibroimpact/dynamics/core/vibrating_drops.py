@@ -11,8 +11,8 @@ import math
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
-from vibroimpact.compiled import compiled, levels_at
+from vibroimpact.arrays import Vector
+from vibroimpact.compiled import Lent, compiled, levels_at
 from vibroimpact.dynamics.core.contact_records import FLIGHT, LAWS, OF_IMPACT, Bodies, Parts
 from vibroimpact.dynamics.core.drop_records import (
     ACCELERATION,
@@ -86,24 +86,13 @@ from vibroimpact.dynamics.core.vibrating_records import (
 )
 
 
-@compiled(
-    lambda t: t.of(Now)(
-        t.lent(Bases),
-        t.lent(Bodies),
-        t.of(ImpactManner),
-        t.lent(VibratingDrop),
-        t.lent(Parts),
-        t.of(SlidingSphere),
-        t.of(Now),
-        t.integer,
-    )
-)
+@compiled
 def follow_vibrating_drop(
-    bases: Bases,
-    bodies: Bodies,
+    bases: Lent[Bases],
+    bodies: Lent[Bodies],
     manner: ImpactManner,
-    drop: VibratingDrop,
-    parts: Parts,
+    drop: Lent[VibratingDrop],
+    parts: Lent[Parts],
     sphere: SlidingSphere,
     now: Now,
     pause: int,
@@ -151,11 +140,7 @@ def follow_vibrating_drop(
     return now
 
 
-@compiled(
-    lambda t: t.of(Now)(
-        t.of(System), t.of(ImpactManner), t.of(VibratingDrop), t.of(Parts), t.of(Now)
-    )
-)
+@compiled
 def fly(system: System, manner: ImpactManner, drop: VibratingDrop, parts: Parts, now: Now) -> Now:
     """Return where a drop is after its flight: at its next touch, or where a rule ends its run."""
     flight = next_flight(system, manner, drop, now.state)
@@ -170,9 +155,7 @@ def fly(system: System, manner: ImpactManner, drop: VibratingDrop, parts: Parts,
     return Now(phase, after, now.begun, now.law, now.manner, now.progress, now.contacts)
 
 
-@compiled(
-    lambda t: t.of(FreeFall)(t.of(System), t.of(ImpactManner), t.of(VibratingDrop), t.of(State))
-)
+@compiled
 def next_flight(
     system: System, manner: ImpactManner, drop: VibratingDrop, state: State
 ) -> FreeFall:
@@ -188,11 +171,7 @@ def next_flight(
     return FreeFall(start, top, touch, 0.0, False)
 
 
-@compiled(
-    lambda t: t.void(
-        t.of(System), t.of(VibratingDrop), t.of(Parts), t.of(State), t.of(State), t.real
-    )
-)
+@compiled
 def write_flight(
     system: System, drop: VibratingDrop, parts: Parts, before: State, after: State, time: float
 ) -> None:
@@ -207,17 +186,15 @@ def write_flight(
     write_centre(drop.state, after)
 
 
-@compiled(lambda t: t.void(t.vector, t.of(State)))
-def write_centre(numbers: Floats, state: State) -> None:
+@compiled
+def write_centre(numbers: Vector, state: State) -> None:
     """Write where the sphere's centre is, and its velocity, to the numbers of a drop."""
     root = math.sqrt(numbers[MASS])
     numbers[GAP] = -state.displacement[0] / root
     numbers[VELOCITY] = -state.velocity[0] / root
 
 
-@compiled(
-    lambda t: t.void(t.of(System), t.of(ImpactManner), t.of(VibratingDrop), t.of(Parts), t.of(Now))
-)
+@compiled
 def write_impact(
     system: System, manner: ImpactManner, drop: VibratingDrop, parts: Parts, now: Now
 ) -> None:
@@ -262,8 +239,8 @@ def write_impact(
         numbers[END_TIME] = numbers[TIME]
 
 
-@compiled(lambda t: t.void(t.of(System), t.of(VibratingDrop), t.of(Now), t.vector))
-def write_vibration(system: System, drop: VibratingDrop, now: Now, row: Floats) -> None:
+@compiled
+def write_vibration(system: System, drop: VibratingDrop, now: Now, row: Vector) -> None:
     """Write what vibration gained in an impact, and add what it lost to that of the drop."""
     lost = drop.lost_in_impact
     own = len(lost) - 1 - system.driven
@@ -281,8 +258,8 @@ def write_vibration(system: System, drop: VibratingDrop, now: Now, row: Floats) 
     row[SURFACE_VELOCITY] = driven_rate(system, now.begun)
 
 
-@compiled(lambda t: t.void(t.of(VibratingDrop), t.of(Now), t.real, t.vector))
-def write_losses(drop: VibratingDrop, now: Now, stored: float, row: Floats) -> None:
+@compiled
+def write_losses(drop: VibratingDrop, now: Now, stored: float, row: Vector) -> None:
     """Write what was lost in the contacts of an impact; `stored`: in the last one at its end [J].
 
     That is lost, too, unless the sphere stays.
@@ -299,8 +276,8 @@ def write_losses(drop: VibratingDrop, now: Now, stored: float, row: Floats) -> N
         numbers[STORED] = stored
 
 
-@compiled(lambda t: t.void(t.of(System), t.of(VibratingDrop), t.of(Now), t.vector))
-def write_separation(system: System, drop: VibratingDrop, now: Now, row: Floats) -> None:
+@compiled
+def write_separation(system: System, drop: VibratingDrop, now: Now, row: Vector) -> None:
     """Write how the sphere separates after an impact, and how high it rises.
 
     One that rides has no separation speed. From a shaken plate its rise is not that of its velocity

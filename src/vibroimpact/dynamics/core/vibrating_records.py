@@ -1,6 +1,6 @@
 """What the core follows drops with whose bodies vibrate.
 
-The annotations name the types of compiled code, in `vibroimpact.compiler.types`. The numbers of a
+The annotations name the types of compiled code. The numbers of a
 drop, its phases and endings, and the columns of its impacts are those of `drop_records`, and these.
 """
 
@@ -8,17 +8,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from vibroimpact.arrays import Integers
+from vibroimpact.arrays import Integers, Matrix, Vector
 from vibroimpact.dynamics.core.contact_records import Manner, Progress
 from vibroimpact.dynamics.core.drop_records import COLUMNS, StopRules
 from vibroimpact.dynamics.core.records import (
-    Boolean,
-    Integer,
     Law,
-    Matrix,
-    Real,
     State,
-    Vector,
 )
 
 IN_CONTACT, NEAR_REST, HELD = -4, -5, -6
@@ -50,16 +45,16 @@ class ImpactManner(NamedTuple):
 
     addresses: Integers
     series: Vector
-    tension: Integer
-    contact_end: Integer
-    tolerance: Real
-    lasts: Boolean
-    recovers: Boolean
-    longest: Real
-    of_contact: Real
-    most_steps: Integer
-    run_end: Real
-    waits: Boolean
+    tension: int
+    contact_end: int
+    tolerance: float
+    lasts: bool
+    recovers: bool
+    longest: float
+    of_contact: float
+    most_steps: int
+    run_end: float
+    waits: bool
     stops: StopRules
 
 
@@ -91,10 +86,10 @@ class Now(NamedTuple):
     first touch; law, manner, progress: of the contact; contacts: how many there were.
     """
 
-    phase: Integer
+    phase: int
     state: State
     begun: State
     law: Law
     manner: Manner
     progress: Progress
-    contacts: Integer
+    contacts: int
