@@ -74,6 +74,7 @@ def use_result(folder: Path) -> None:
     load_drop(folder)
 
 
+@pytest.mark.slow
 @FEW
 def test_results(few: int, tmp_path: Path) -> None:
     case = vi.case_of({**TABLE, "run": {"impacts": 1, "duration": "20 ms"}})
@@ -123,6 +124,7 @@ def studies(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
+@pytest.mark.slow
 @FEW
 def test_studies(few: int, studies: Path) -> None:
     no_failures(

@@ -191,6 +191,7 @@ def test_the_guard_sees_calls(guard: Guard, tmp_path: Path) -> None:
         assert "getaddrinfo compiled.invalid by compiled code" in guard.calls
 
 
+@pytest.mark.slow
 def test_quick_commands_call_nobody(guard: Guard, folder: Path) -> None:
     told = guard.run(RUN_ALL, json.dumps(QUICK), folder=folder)
     assert "none is sent" in told

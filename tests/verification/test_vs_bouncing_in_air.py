@@ -101,6 +101,7 @@ def test_rebound_heights(agrees: Agrees, seen: Bounces) -> None:
     assert not doubts(evaluated(target, False))
 
 
+@pytest.mark.slow
 def test_a_position_record(seen: Bounces, tmp_path: Path) -> None:
     time = np.arange(0.0, seen.touches[-1], 2e-3)
     noisy = seen.position(time) + 1e-4 * np.random.default_rng(1).normal(size=len(time))

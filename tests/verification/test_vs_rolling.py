@@ -835,6 +835,7 @@ def test_a_slip_of_rounding_is_none() -> None:
     assert state.velocity[:, 0] == pytest.approx([1.3 + 2.0 * 5.0 / 7.0, 0.7], rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rolling", [0.0, 0.01])
 @pytest.mark.parametrize("size", [1e-7, 1e-12])
 def test_a_slow_slip_across_a_slope_ends_as_a_fast_one(size: float, rolling: float) -> None:

@@ -552,6 +552,7 @@ def test_a_lump_at_rest_on_a_sprung_deck_moves_on_as_scipy_has_it(agrees: Agrees
     assert drive - drive[0] == pytest.approx(work, abs=0.01 * np.ptp(work))
 
 
+@pytest.mark.slow
 def test_friction_turns_with_a_table_that_shakes_across_the_slip(agrees: Agrees) -> None:
     """A sphere rides and slides over many periods: friction points against the slip at
     every instant, as in SciPy's integration of it.

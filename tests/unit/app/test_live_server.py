@@ -213,6 +213,7 @@ def test_it_is_bound_to_this_machine(server: Server) -> None:
             assert other.connect_ex(address) != 0
 
 
+@pytest.mark.slow
 def test_ctrl_c_ends_it_whoever_does_not_read_and_whatever_it_computes() -> None:
     """A client that never reads a script, and a window whose modes take a minute: neither
     holds the server.

@@ -291,6 +291,7 @@ def test_a_failure_is_told_and_the_next_case_is_computed(monkeypatch: pytest.Mon
     assert kinds == ["fault", "state"]
 
 
+@pytest.mark.slow
 def test_report_and_signals_are_those_of_the_last_case() -> None:
     async def talk(session: Session, heard: list[dict[str, Any]]) -> None:
         await session.receive('{"type": "report", "number": 1}')

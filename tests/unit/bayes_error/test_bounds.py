@@ -62,6 +62,7 @@ def test_what_is_measured_besides_never_raises_the_bound(samples: int) -> None:
             assert errors[more].lower <= errors[more].upper <= errors[less].upper
 
 
+@pytest.mark.slow
 def test_the_headline_of_few_falls_states_what_they_tell(bound: Bound) -> None:
     assert "falls are few" not in headline(bound)
     few = headline(bound_of(vi.studies.load_sweep("signals:coal-gangue", 64)))

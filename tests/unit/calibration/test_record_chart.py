@@ -64,6 +64,7 @@ def test_forces(response: vi.Response, tmp_path: Path) -> None:
     assert not (folder / "figures").exists()
 
 
+@pytest.mark.slow
 def test_a_force_is_shown_where_it_was_measured(response: vi.Response, tmp_path: Path) -> None:
     """At the times of the record, all samples of it, with the difference below and each
     contact enlarged.

@@ -351,6 +351,7 @@ def test_a_rigid_case_loads_nothing_that_vibrates(tmp_path: Path) -> None:
     assert not [name for name in loaded if name.startswith("vibroimpact.dynamics.vibrating")]
 
 
+@pytest.mark.slow
 def test_modes_that_are_stored_load_no_solvers(tmp_path: Path) -> None:
     sphere = {
         "radius": 0.01,

@@ -94,6 +94,7 @@ def test_newtons_is_the_recursion() -> None:
         assert separation == pytest.approx(speed, rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("function", FUNCTIONS.values(), ids=FUNCTIONS)
 @pytest.mark.parametrize("setting", SETTINGS)
 def test_it_is_the_list_of_its_values(setting: str, function: dict[str, Any]) -> None:
@@ -159,6 +160,7 @@ def test_a_study_takes_it(tmp_path: Path) -> None:
     assert (study.values("limit_speeds_given") > 1.05).tolist() == [False, False, True]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("function", FUNCTIONS.values(), ids=FUNCTIONS)
 def test_written_and_read_again(function: dict[str, Any], tmp_path: Path) -> None:
     case = case_of("rigid", {"law": "tsuji", "restitution": function})

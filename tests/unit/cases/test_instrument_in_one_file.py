@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import vibroimpact as vi
 from vibroimpact.dynamics.sensors.instruments.registry import instruments
 
@@ -104,6 +106,7 @@ except vi.InputError as error:
 """
 
 
+@pytest.mark.slow
 def test_an_instrument_is_one_file(tmp_path: Path) -> None:
     (tmp_path / "vibrometer.py").write_text(INSTRUMENT, encoding="utf-8")
     run = subprocess.run(

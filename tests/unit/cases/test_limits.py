@@ -647,6 +647,7 @@ def test_a_plate_that_moves_on_its_springs_does_not_bend() -> None:
     assert not any("it also stretches" in doubt for doubt in result.doubts)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("radius", "thicknesses"), [(0.2, 0.249), (0.5, 1.074)])
 def test_a_heavy_sphere_bends_the_plate_most_long_after_it_touches(
     radius: float, thicknesses: float, tmp_path: Path

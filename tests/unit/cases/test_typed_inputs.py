@@ -189,6 +189,7 @@ def test_intervals_hold_the_truth_with_inputs_that_are_off(law: int) -> None:
     assert 0.92 <= hits / 300 <= 0.985
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("contact", [3e-5, 1e-4])
 def test_intervals_hold_the_truth_where_contacts_take_longer_at_lower_speeds(
     contact: float,

@@ -115,6 +115,7 @@ def test_formats_do_not_depend_on_each_other(tmp_path: Path) -> None:
         assert path.read_bytes() == (tmp_path / "b" / path.name).read_bytes(), path.name
 
 
+@pytest.mark.slow
 def test_figures_may_go_elsewhere(folder: Path, elsewhere: tuple[Path, list[float]]) -> None:
     place, fractions = elsewhere
     assert len(list(place.iterdir())) == 3 * len(RIGID)
@@ -123,6 +124,7 @@ def test_figures_may_go_elsewhere(folder: Path, elsewhere: tuple[Path, list[floa
     assert not (folder / "figures").exists()
 
 
+@pytest.mark.slow
 def test_a_run_writes_them_when_it_is_asked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

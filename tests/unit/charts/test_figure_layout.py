@@ -94,6 +94,7 @@ def test_words_of_a_run_neither_collide_nor_are_cut(figures: dict[str, Figure]) 
         check_words(figure)
 
 
+@pytest.mark.slow
 def test_a_small_panel_tells_its_number_below_its_name(figures: dict[str, Figure]) -> None:
     assert titles(figures["acceleration"])[1:3] == ["Impact 1\n113355 m/s²", "Impact 2\n83454 m/s²"]
     assert titles(figures["velocity"])[1] == "Impact 1\nrestitution 0.7748"

@@ -168,6 +168,7 @@ def shown(what: RenderableType, width: int, encoding: str = "utf-8") -> list[str
     return file.buffer.getvalue().decode(encoding).splitlines()
 
 
+@pytest.mark.slow
 def test_every_command_is_here(commands: Printed) -> None:
     from vibroimpact.cli.shared import app
 

@@ -273,6 +273,7 @@ def test_code_is_loaded_by_the_next_process(toy: Toy) -> None:
     assert toy.run(PYTHONHASHSEED="7") == ["24.0", "loaded"]
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_a_large_function_is_called_by_its_symbol(toy: Toy) -> None:
     toy.program.write_text(
@@ -293,6 +294,7 @@ def test_a_large_function_is_called_by_its_symbol(toy: Toy) -> None:
     assert caller.exists()
 
 
+@pytest.mark.slow
 def test_functions_of_one_name_from_several_processes_are_told_apart(tmp_path: Path) -> None:
     """Two laws made by one function that makes functions, compiled apart and loaded together."""
     program = tmp_path / "laws.py"
@@ -314,6 +316,7 @@ def test_functions_of_one_name_from_several_processes_are_told_apart(tmp_path: P
     assert run("thornton", "storakers") == ["True", "True"]
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_an_edited_callee_or_constant_is_compiled_anew(toy: Toy) -> None:
     assert toy.run() == ["24.0", "compiled"]
@@ -323,6 +326,7 @@ def test_an_edited_callee_or_constant_is_compiled_anew(toy: Toy) -> None:
     assert toy.run() == ["24.0", "loaded"]
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_a_damaged_file_is_replaced(toy: Toy) -> None:
     toy.run()
@@ -349,6 +353,7 @@ def test_a_store_that_cannot_be_written_is_done_without(toy: Toy) -> None:
     assert toy.run() == ["24.0", "compiled"]
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_another_processor_has_its_own_code(toy: Toy) -> None:
     assert toy.run() == ["24.0", "compiled"]
@@ -356,6 +361,7 @@ def test_another_processor_has_its_own_code(toy: Toy) -> None:
     assert len({path.parent for path in toy.files()}) == 2
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_of_two_processes_one_compiles(toy: Toy) -> None:
     answers = [printed(process) for process in [toy.start(), toy.start()]]
@@ -364,6 +370,7 @@ def test_of_two_processes_one_compiles(toy: Toy) -> None:
         assert sorted(answer[1] for answer in answers) == ["compiled", "loaded"]
 
 
+@pytest.mark.slow
 @needs_compiler
 @pytest.mark.skipif(os.name != "posix", reason="needs signals")
 def test_a_killed_process_leaves_nothing_in_the_way(toy: Toy) -> None:

@@ -32,6 +32,7 @@ def traced() -> Iterator[None]:
     tracemalloc.stop()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("traced")
 def test_an_impact_takes_less_than_two_thousand_bytes() -> None:
     """Of its contact no more is kept than how it began and ended."""

@@ -335,6 +335,7 @@ def test_the_origin_of_a_mesh_may_be_a_corner_of_the_plate(tmp_path: Path) -> No
         vi.identification.identify(case, its_records(case), place=(-0.1, 0.1))
 
 
+@pytest.mark.slow
 def test_the_frequency_that_is_asked_for_ends_the_doubt() -> None:
     def doubts(**modes: Any) -> list[str]:
         case = small(

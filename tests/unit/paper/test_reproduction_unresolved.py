@@ -171,11 +171,12 @@ def test_the_step_that_fits_is_near_a_tenth_of_a_millisecond(runs: Runs) -> None
     assert paper_impact(runs, 2)["separation_speed_m_s"] == pytest.approx(2.157, abs=5e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "values"),
     [
         (2, (3582.036, 0.26228, 0.32)),
-        pytest.param(3, (3680.223, 0.18278, 0.2935), marks=pytest.mark.slow),
+        (3, (3680.223, 0.18278, 0.2935)),
     ],
     ids=[2, 3],
 )

@@ -77,6 +77,7 @@ def held(rocks: int, share: float, sets: int, seed: int) -> float:
 # intervals
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.1, 0.9])
 @pytest.mark.parametrize("rocks", [6, 8, 12])
 def test_intervals_of_few_rocks_hold_the_true_error(rocks: int, share: float) -> None:
@@ -244,6 +245,7 @@ def few(tmp_path_factory: pytest.TempPathFactory) -> vi.recognition.Recognition:
     return vi.recognition.recognise(place, seeds=1, workers=1)
 
 
+@pytest.mark.slow
 def test_what_few_rocks_can_not_tell_is_said(few: vi.recognition.Recognition) -> None:
     assert few.folds == 3
     told = list(sentences(few))

@@ -488,6 +488,7 @@ def test_streams_of_other_rocks_are_within_their_intervals() -> None:
 # the whole
 
 
+@pytest.mark.slow
 def test_everything_is_compared(found: vi.recognition.Recognition) -> None:
     assert list(found.scores) == [one.name for one in all_classifiers()] == list(found.random)
     assert found.best in (

@@ -77,6 +77,7 @@ def leaks(value: np.ndarray, seed: int) -> list[str]:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_trace_of_the_recorder_is_found_without_a_bound(kind: str) -> None:
     """None was where no bound was known: an offset gave 99.2 % for a possible 71.5."""

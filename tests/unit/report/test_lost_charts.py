@@ -75,6 +75,7 @@ def test_a_sensor_without_a_sample_after_the_touch(
     assert "could not be drawn" not in (tmp_path / "out/report.html").read_text()
 
 
+@pytest.mark.slow
 def test_charts_that_raise(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -123,6 +124,7 @@ def test_a_calibration_whose_chart_raises(tmp_path: Path, monkeypatch: pytest.Mo
     assert "could not be drawn" in (folder / "report.html").read_text()
 
 
+@pytest.mark.slow
 def test_every_list_of_charts_and_every_page_is_made_so() -> None:
     """Of run, sweep, calibrate, modes, dataset, recognise, identify, correlate, bound and
     compare, and of what comes later.

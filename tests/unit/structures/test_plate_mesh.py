@@ -132,6 +132,7 @@ def test_only_plate_elements_with_their_statics_have_it() -> None:
     assert math.isnan(plate_mesh_error(bricks, {"impact": [1]}))
 
 
+@pytest.mark.slow
 def test_it_is_told_and_doubted_and_the_remedy_is_one(tmp_path: Path) -> None:
     result = result_of(vi.simulate(case()))
     error = plate_mesh_error(result.deformation, result.impacts)

@@ -358,6 +358,7 @@ def test_two_bodies_can_not_hold_one_point(patch_first: bool) -> None:
         held_by(structure, [other, bar])
 
 
+@pytest.mark.slow
 def test_the_point_that_two_bodies_hold_is_named() -> None:
     """It lies in both: in the bar from -0.06 m to 0.06 m along x, and in the patch from
     0.03 m on.

@@ -150,6 +150,7 @@ def table(**sweep: Any) -> dict[str, Any]:
     }
 
 
+@pytest.mark.slow
 def test_a_population_is_computed_and_read(tmp_path: Path) -> None:
     sweep = vi.studies.sweep_of(table())
     study = vi.studies.load_study(vi.studies.run_sweep(sweep, tmp_path / "falls"))

@@ -482,6 +482,7 @@ def test_keys_that_are_markup_are_shown_as_they_are(drawn: Study, tmp_path: Path
         plotly_figure(chart)
 
 
+@pytest.mark.slow
 def test_no_figure_is_drawn_for_a_report(drawn: Study) -> None:
     program = """
 import sys

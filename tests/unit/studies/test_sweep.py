@@ -373,6 +373,7 @@ def _nothing() -> None:
     pass
 
 
+@pytest.mark.slow
 def test_processes_compute_the_same_bits(tmp_path: Path) -> None:
     assert _chunks(partial(processes, 2, _nothing, tmp_path)) == _chunks(this_process)
 

@@ -349,12 +349,13 @@ def fallen_by_20_dB(force: Record) -> float:
     return low[0] * force.rate / (1 << 18) if len(low) else np.inf
 
 
-@pytest.mark.parametrize("with_force", [True, pytest.param(False, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("with_force", [True, False])
 @pytest.mark.parametrize(
     ("radius", "material"),
     [
-        pytest.param(0.016, "steel", marks=pytest.mark.slow),
-        pytest.param(0.016, SOFT, marks=pytest.mark.slow),
+        (0.016, "steel"),
+        (0.016, SOFT),
         (0.03, SOFT),
     ],
 )
@@ -395,6 +396,7 @@ def test_a_case_without_damping() -> None:
     assert (found.damped_frac > 0.995).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("with_force", [True, False])
 def test_a_modulus_that_is_off_is_told_of_records_too(with_force: bool) -> None:
     """Frequencies are proportional to its square root; with them the damping can be told apart."""

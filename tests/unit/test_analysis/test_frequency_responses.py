@@ -148,6 +148,7 @@ def test_units_of_dataset_164(tmp_path: Path) -> None:
     np.testing.assert_allclose(found.value, 0.0254 * 0.22481 * RIGHT[0], rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_without_a_unit_it_is_taken_as_si_and_said(tmp_path: Path) -> None:
     labels = {"ordinate_axis_units_lab": "NONE", "orddenom_axis_units_lab": "NONE"}
     found = compared(tmp_path, **labels)
@@ -239,6 +240,7 @@ def test_coherences_belong_to_their_responses(tmp_path: Path, swapped: bool) -> 
     assert second.coherence is None
 
 
+@pytest.mark.slow
 def test_modes_of_a_closed_form(tmp_path: Path) -> None:
     """Without noise to 1e-5, with noise within the intervals; those that both places and
     the impact move all are found.
@@ -578,6 +580,7 @@ def run(*words: str) -> Any:
     return CliRunner().invoke(app, list(words), catch_exceptions=True)
 
 
+@pytest.mark.slow
 def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("plate.toml").write_text(tomli_w.dumps(TABLE))

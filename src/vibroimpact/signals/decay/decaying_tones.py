@@ -22,7 +22,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import linalg, signal
+from scipy import fft, linalg
 
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.signals.inverse.gauss_newton import Fit, gauss_newton
@@ -222,6 +222,8 @@ class Bins(Spectra):
         count = len(self.omega)
         offset = self.step * np.arange(-count, count + 1)
         in_band = slice(count, 2 * count)
+        length = fft.next_fast_len(len(residual) + len(offset) - 1)
+        spectra = fft.fft(residual, length, axis=0)
         highest = -1.0
         best = np.zeros(2)
         for nepers in _DECAYS:
@@ -231,11 +233,10 @@ class Bins(Spectra):
                 1.0 - np.exp(-decay - 1j * offset)
             )
             energy = np.convolve(np.ones(count), np.abs(shape) ** 2)[in_band]
-            match = [
-                np.abs(signal.fftconvolve(channel, shape[::-1].conj())[in_band]) ** 2
-                for channel in residual.T
-            ]
-            power = np.sum(match, axis=0) / energy
+            # the correlation of each channel with it
+            products = spectra * fft.fft(shape[::-1].conj(), length)[:, None]
+            match = fft.ifft(products, axis=0)[in_band]
+            power = np.sum(np.abs(match) ** 2, axis=1) / energy
             peak = int(np.argmax(power))
             if power[peak] > highest:
                 highest = float(power[peak])
