@@ -15,7 +15,7 @@ import ctypes
 import struct
 from collections.abc import Callable
 from operator import attrgetter
-from typing import Any, NamedTuple
+from typing import Any, NoReturn
 
 import numpy as np
 from llvmlite import ir
@@ -181,18 +181,20 @@ class Packing:
         self._format = "@"
         self._numbers: list[str] = []
         self._arrays: list[str] = []
-        self._places: list[_Place] = []
+        self._offsets: list[int] = []
+        self._kinds: list[tuple[int, int, bool]] = []
         self._append(kind, "")
         self._struct = struct.Struct(self._format)
         self._numbers_of = _getter(self._numbers)
         self._arrays_of = _getter(self._arrays)
+        self._packed_for_good: dict[int, tuple[Any, np.ndarray[Any, Any]]] = {}
 
     def _append(self, kind: Any, name: str) -> None:
         """Append a type to the format. Tuples and arrays are aligned as eight bytes are."""
         if isinstance(kind, types.Array):
             self._format += _ALIGNED
-            offset = struct.calcsize(self._format)
-            self._places.append(_Place(offset, _DTYPES[kind.dtype], kind.ndim))
+            self._offsets.append(struct.calcsize(self._format))
+            self._kinds.append((_DTYPES[kind.dtype], kind.ndim, True))
             self._arrays.append(name)
             self._format += f"{_WORD * (5 + 2 * kind.ndim)}x"
         elif isinstance(kind, BaseNamedTuple):
@@ -205,28 +207,34 @@ class Packing:
             self._format += _FORMATS[kind]
 
     def pack(self, values: Any) -> np.ndarray[Any, Any]:
-        """Return the bytes of a tuple, which must be kept with it as long as these are used."""
+        """Return the bytes of a tuple, which must be kept with it as long as these are used.
+
+        A tuple that says that it `is_constant` is packed once and kept for good.
+        """
+        if id(values) in self._packed_for_good:
+            return self._packed_for_good[id(values)][1]
         content = bytearray(self._struct.pack(*self._numbers_of(values)))
         packed = np.frombuffer(content, dtype=np.uint8)
-        start = address_of(packed)
         arrays = self._arrays_of(values)
-        for name, array, (offset, dtype, dimensions) in zip(
-            self._arrays, arrays, self._places, strict=True
-        ):
-            is_of_kind = array.dtype.num == dtype and array.ndim == dimensions
-            if not (is_of_kind and array.flags.c_contiguous):  # compiled code would not notice
-                shape = f"an array of {array.dtype} of shape {array.shape}"
-                raise TypeError(f"{name} cannot be {shape}, or one with gaps")
+        if list(map(_kind_of, arrays)) != self._kinds:  # compiled code would not notice
+            self._refuse(arrays)
+        start = address_of(packed)
+        for array, offset in zip(arrays, self._offsets, strict=True):
             _describe(array, start + offset)
+        if getattr(values, "is_constant", False):
+            self._packed_for_good[id(values)] = (values, packed)
         return packed
 
+    def _refuse(self, arrays: tuple[np.ndarray[Any, Any], ...]) -> NoReturn:
+        for name, array, kind in zip(self._arrays, arrays, self._kinds, strict=True):
+            if _kind_of(array) != kind:
+                shape = f"an array of {array.dtype} of shape {array.shape}"
+                raise TypeError(f"{name} cannot be {shape}, or one with gaps")
+        raise AssertionError("all arrays are as they should be")
 
-class _Place(NamedTuple):
-    """Where an array is described [bytes], the number of its elements' type, its dimensions."""
 
-    offset: int
-    dtype: int
-    dimensions: int
+# the number of the elements' type, the dimensions, and whether there are no gaps
+_kind_of = attrgetter("dtype.num", "ndim", "flags.c_contiguous")
 
 
 def _getter(names: list[str]) -> Callable[[Any], tuple[Any, ...]]:

@@ -123,9 +123,7 @@ class Response(Reported, EndedRun, reported_in="vibroimpact.runs.response_report
         """Return the response of a batch of one as that of a single drop."""
         impacts = {name: column[0] for name, column in self.impacts.items()}
         energy = {name: value[0] for name, value in self.energy.items()}
-        bounces = self.bounces
-        if isinstance(bounces, BouncesOfDrops):
-            bounces = _bounces_of(bounces, 0)
+        bounces = None if self.bounces is None else _bounces_of(self.bounces, 0)
         return replace(self, impacts=impacts, energy=energy, bounces=bounces)
 
     @property
@@ -373,8 +371,7 @@ class Response(Reported, EndedRun, reported_in="vibroimpact.runs.response_report
     @property
     def _bounces(self) -> Sequence[Bounce]:
         """Flights and contacts of one drop."""
-        assert self.bounces is not None
-        assert not isinstance(self.bounces, BouncesOfDrops)
+        assert isinstance(self.bounces, Sequence)
         return self.bounces
 
     def _segment_of(self, times: Floats) -> Indices:
@@ -429,4 +426,4 @@ class Response(Reported, EndedRun, reported_in="vibroimpact.runs.response_report
 
 def _bounces_of(bounces: Sequence[Bounce] | BouncesOfDrops, drop: int) -> Sequence[Bounce]:
     """Return the flights and contacts of one drop of a batch."""
-    return bounces.of(drop) if isinstance(bounces, BouncesOfDrops) else bounces
+    return bounces if isinstance(bounces, Sequence) else bounces.of(drop)

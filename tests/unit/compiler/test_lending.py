@@ -113,3 +113,30 @@ def test_other_arrays_are_refused(matrix):
     outer = an_outer()._replace(matrix=np.asfortranarray(matrix) if matrix.ndim == 2 else matrix)
     with pytest.raises(TypeError, match="matrix cannot be an array"):
         doubled(outer)
+
+
+class Weights(NamedTuple):
+    """Numbers that nobody changes."""
+
+    values: Vector
+
+    @property
+    def is_constant(self) -> bool:
+        return True
+
+
+@compiled
+def weighted_sum(weights: Lent[Weights], outer: Lent[Outer]) -> float:
+    return float(weights.values @ outer.inner.values)
+
+
+@needs_compiler
+def test_constants_are_packed_once_and_kept() -> None:
+    for factor in (1.0, 2.0):
+        weights = Weights(factor * np.ones(3))
+        for _ in range(3):
+            assert weighted_sum(weights, an_outer()) == 7.0 * factor
+        del weights
+    constant, other = weighted_sum.compiled._packings  # type: ignore[attr-defined]
+    assert len(constant._packed_for_good) == 2
+    assert not other._packed_for_good

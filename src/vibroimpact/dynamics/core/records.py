@@ -335,3 +335,8 @@ class Bases(NamedTuple):
     touch: Basis
     inside: Basis
     release: Basis
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether there is one for all drops: it depends on a power of time alone."""
+        return True

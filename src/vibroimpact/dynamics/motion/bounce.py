@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol, TypeVar, overload, runtime_checkable
+from typing import Protocol, TypeVar, overload
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.motion.along import ContactAlong, Sphere, State
@@ -57,7 +57,6 @@ class MadeBounces(Sequence[MadeBounce]):
         """Make the bounce with a number, from 0."""
 
 
-@runtime_checkable
 class BouncesOfDrops(Protocol):
     """The bounces of the drops of a batch, made where they are asked for."""
 
