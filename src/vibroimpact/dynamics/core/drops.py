@@ -148,20 +148,39 @@ def ready(manner: DropManner, drops: Drops, drop: int) -> int:
 def begin(
     has_force: bool, addresses: Integers, fresh: Vector, coefficients: Vector, state: Vector
 ) -> None:
-    """Give a drop the coefficients of its first law, and a rest speed unless it has one.
-
-    That is the speed from which it would rise by its static indentation, and at least 1e-6 of the
-    first approach speed.
-    """
-    least = LEAST_REST_SPEED * next_touch(state, 0.0).speed
+    """Give a drop the coefficients of its first law, and a rest speed unless it has one."""
+    approach_speed = next_touch(state, 0.0).speed
+    rest_speed = LEAST_REST_SPEED * approach_speed
     if has_force:
         remember(addresses, False, fresh, 0.0, coefficients)
-        touch, release, _, _, _ = levels_at(addresses[2])(coefficients)
-        weight = state[MASS] * state[GRAVITY]
-        sag = static_indentation(addresses, coefficients, release, weight) - touch
-        least = max(math.sqrt(2.0 * state[GRAVITY] * sag), least)
+        rest_speed = default_rest_speed(
+            addresses, coefficients, state[MASS], state[GRAVITY], approach_speed
+        )
     if math.isnan(state[REST_SPEED]):
-        state[REST_SPEED] = least
+        state[REST_SPEED] = rest_speed
+
+
+@compiled
+def default_rest_speed(
+    addresses: Integers, coefficients: Vector, mass: float, gravity: float, approach_speed: float
+) -> float:
+    """Return the speed of separation below which a drop without a stated one rests [m/s].
+
+    From it a sphere would rise by its static indentation. It is at least 1e-6 of the first approach
+    speed.
+
+    Parameters
+    ----------
+    addresses, coefficients : array
+        Functions and coefficients of the law of the first impact.
+    mass, gravity : float
+        Of the sphere [kg], and what accelerates it onto the plate [m/s^2].
+    approach_speed : float
+        Of the first impact [m/s].
+    """
+    touch, release, _, _, _ = levels_at(addresses[2])(coefficients)
+    sag = static_indentation(addresses, coefficients, release, mass * gravity) - touch
+    return max(math.sqrt(2.0 * gravity * sag), LEAST_REST_SPEED * approach_speed)
 
 
 @compiled

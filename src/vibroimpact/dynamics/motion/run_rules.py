@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.compiled import law_addresses
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
-from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core import stop_rules
 from vibroimpact.dynamics.core.drop_records import StopRules
-from vibroimpact.dynamics.core.drops import LEAST_REST_SPEED
+from vibroimpact.dynamics.core.drops import LEAST_REST_SPEED, default_rest_speed
 from vibroimpact.dynamics.motion.flight import Flight
+from vibroimpact.dynamics.motion.law_coefficients import coefficients_of
 from vibroimpact.dynamics.statement.outcome import Outcome
 from vibroimpact.dynamics.statement.problem import MOST_IMPACTS, Problem
 
@@ -50,11 +51,10 @@ def stop_rules_of(problem: Problem) -> StopRules:
     return StopRules(np.array(kinds), np.array(values, dtype=float), np.array(endings))
 
 
-def default_rest_speed(law: ContactLaw, flight: Flight, mass: Floats, gravity: Floats) -> Floats:
+def default_rest_speeds(law: ContactLaw, flight: Flight, mass: Floats, gravity: Floats) -> Floats:
     """Return the speeds of separation below which drops without a stated one rest [m/s] (B,).
 
-    From it a sphere would rise by its static indentation. It is at least 1e-6 of the first approach
-    speed, which is what it is under a law without a force.
+    Under a law without a force they are 1e-6 of the first approach speed.
 
     Parameters
     ----------
@@ -66,11 +66,15 @@ def default_rest_speed(law: ContactLaw, flight: Flight, mass: Floats, gravity: F
         Of the spheres [kg], and what accelerates them onto the plate [m/s^2].
     """
     _, speed = flight.touch(np.zeros(1))
-    least = LEAST_REST_SPEED * speed
     if not isinstance(law, CompliantLaw):
-        return least
-    sag = static_indentation(law, mass * gravity) - law.touch_level
-    speeds: Floats = np.maximum(np.sqrt(2.0 * gravity * sag), least)
+        return LEAST_REST_SPEED * speed
+    addresses = law_addresses(type(law))
+    with coefficients_of(law, len(mass)) as coefficients:
+        speeds = np.empty_like(speed)
+        for drop in range(len(speed)):
+            speeds[drop] = default_rest_speed(
+                addresses, coefficients[drop], mass[drop], gravity[drop], speed[drop]
+            )
     return speeds
 
 

@@ -13,7 +13,7 @@ from vibroimpact.dynamics.core.stop_rules import first_end
 from vibroimpact.dynamics.fluids.fluid import Fluid
 from vibroimpact.dynamics.motion.along import State, spheres_of
 from vibroimpact.dynamics.motion.flight_in_fluid import FluidFlight
-from vibroimpact.dynamics.motion.run_rules import default_rest_speed
+from vibroimpact.dynamics.motion.run_rules import default_rest_speeds
 from vibroimpact.dynamics.statement.problem import Problem
 
 
@@ -56,7 +56,7 @@ class FluidDrops:
             return
         flights = self.flights(drops, np.arange(len(drops.phases)))
         state = drops.state.T
-        drops.state[:, records.REST_SPEED] = default_rest_speed(
+        drops.state[:, records.REST_SPEED] = default_rest_speeds(
             problem.law_of(0), flights, state[records.MASS], state[records.GRAVITY]
         )
 

@@ -17,7 +17,7 @@ from vibroimpact.dynamics.core.stop_rules import is_too_slow
 from vibroimpact.dynamics.motion.flight import Flight
 from vibroimpact.dynamics.motion.progress import fraction_done
 from vibroimpact.dynamics.motion.ride import Ride
-from vibroimpact.dynamics.motion.run_rules import OUTCOME_CODES, default_rest_speed, start_of
+from vibroimpact.dynamics.motion.run_rules import OUTCOME_CODES, default_rest_speeds, start_of
 from vibroimpact.dynamics.oblique.told_flights import ToldFlights
 from vibroimpact.dynamics.shaken.recorded_drop import HardBounces
 from vibroimpact.dynamics.statement.outcome import OUTCOMES, Outcome
@@ -70,7 +70,7 @@ class HardDrop:
             mass = np.array([self.mass])
             gravity = np.array([self.gravity])
             law = problem.law_of(0)
-            self.rest_speed = float(default_rest_speed(law, self._flight(), mass, gravity)[0])
+            self.rest_speed = float(default_rest_speeds(law, self._flight(), mass, gravity)[0])
         else:
             self.rest_speed = float(problem.rest_speed)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -116,12 +115,23 @@ class ContactView:
             system, self.surfaces, self.coordinates, self.sliding.surfaces, self.sliding.coordinates
         )
 
-    @cached_property
-    def without_load(self) -> ContactView:
-        """The same without gravity and gaps, for the difference of two motions."""
-        system = self.system
-        free = replace(system, offset=np.zeros_like(system.offset), load=np.zeros_like(system.load))
-        return ContactView(free, self.contacts, self.modes)
+    @property
+    def bodies_without_load(self) -> Bodies:
+        """The same without gravity and gaps, for the difference of two motions.
+
+        There are no directions of friction.
+        """
+        bodies = self.bodies
+        load = np.zeros_like(bodies.system.load)
+        surfaces = bodies.surfaces._replace(gravity=np.zeros_like(bodies.surfaces.gravity))
+        coordinates = bodies.coordinates._replace(load=load)
+        return Bodies(
+            bodies.system._replace(load=load, offset=0.0, gravity=0.0),
+            surfaces,
+            coordinates,
+            surfaces,
+            coordinates,
+        )
 
     def start(self, state: State) -> Start:
         """Return the state of the surfaces in a state of the system."""

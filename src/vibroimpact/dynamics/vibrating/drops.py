@@ -59,9 +59,10 @@ def follow(
     """
     alone = problem.alone()
     mass = float(alone[0].sphere.mass)
+    gravity = float(alone[0].net_gravity)
     # drops of the same sphere share a system, with what is cached in it
-    system = system_of(problem, mass, float(alone[0].net_gravity))
-    systems = {}
+    system = system_of(problem, mass, gravity)
+    systems = {(mass, gravity): system}
     ended = []
     for number, single in enumerate(alone):
         sphere = float(single.sphere.mass), float(single.net_gravity)

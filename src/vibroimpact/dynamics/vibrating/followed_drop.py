@@ -15,7 +15,7 @@ import numpy as np
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core.contact_records import FLIGHT
-from vibroimpact.dynamics.core.drops import end_by_bounces
+from vibroimpact.dynamics.core.drops import default_rest_speed, end_by_bounces
 from vibroimpact.dynamics.core.parts import has_room
 from vibroimpact.dynamics.core.vibrating_drops import follow_vibrating_drop, next_flight
 from vibroimpact.dynamics.core.vibrating_records import (
@@ -28,7 +28,7 @@ from vibroimpact.dynamics.core.vibrating_records import (
 )
 from vibroimpact.dynamics.motion.flight import Flight
 from vibroimpact.dynamics.motion.progress import fraction_done
-from vibroimpact.dynamics.motion.run_rules import default_rest_speed, start_of
+from vibroimpact.dynamics.motion.run_rules import start_of
 from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.contact_view import contact_view
 from vibroimpact.dynamics.vibrating.drop_at_start import (
@@ -90,12 +90,14 @@ class FollowedDrop:
         self._bases = bases_of(first_law_of(problem).root)
         self._equilibria = Equilibria(system)
         if problem.rest_speed is None:
+            _, approach_speed = self.first_flight().touch(np.zeros(1))
             self.drop.state[records.REST_SPEED] = default_rest_speed(
-                first_law_of(problem),
-                self.first_flight(),
-                self.drop.state[[records.MASS]],
-                self.drop.state[[records.GRAVITY]],
-            )[0]
+                self.manner.addresses,
+                self.drop.laws[0],
+                self.drop.state[records.MASS],
+                self.drop.state[records.GRAVITY],
+                approach_speed[0],
+            )
 
     def first_flight(self) -> Flight:
         """Return the flight from the start."""

@@ -27,7 +27,7 @@ def growth_of(drop: FollowedDrop) -> Floats:
     """
     growth = np.empty(drop.impacts)
     view = contact_view(drop.recorded.system, (0,))
-    still = view.without_load.bodies
+    still = view.bodies_without_load
     recorded = Recorded(
         system=view.bodies.system,
         still=still.system,
