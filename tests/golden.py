@@ -147,8 +147,12 @@ def _known_to(name: str) -> float:
     """Return to what relative accuracy the numbers of a drop are known, where that is less than the
     tolerance.
 
-    So it is where friction with history acts on bodies that yield, or that are shaken.
+    So it is where friction with history acts on bodies that yield, or that are shaken; and where
+    rounding errors grow in an impact of ten contacts, whose restitution changes by up to 7e-10 with
+    the last digit of the height.
     """
+    if name == "many contacts":
+        return 2e-9
     if name.startswith("sloping in series"):
         return 5e-3
     friction = (
