@@ -16,8 +16,8 @@ from vibroimpact.cases.validity import edge, fast_flight, modes_left_out
 from vibroimpact.cases.validity.adhesion import WORK_OF_ADHESION
 from vibroimpact.cases.validity.finite_sphere import force_lacking
 from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE
+from vibroimpact.dynamics.core.fall import HIGHEST_REYNOLDS
 from vibroimpact.dynamics.fluids.air import AIR_DENSITY
-from vibroimpact.dynamics.fluids.fluid import HIGHEST_REYNOLDS
 from vibroimpact.dynamics.fluids.liquid import CRITICAL_STOKES
 from vibroimpact.structures.sphere_compliance import FITTED
 

@@ -94,7 +94,7 @@ LOOKS: dict[str, Look] = {
     "inner band": Look("#0b4f8a", "#6cb6ff", opacity=0.45),
     "total": Look("#1b1b1b", "#e8e8e8", (6, 3), 1.6),
     "body": Look("#cfd6dd", "#4a525b", width=0.8),
-    "ball": Look("#b9b2a7", "#8b857b", width=0.9),
+    "sphere": Look("#b9b2a7", "#8b857b", width=0.9),
     "support": Look("#6b6b6b", "#9a9a9a", width=0.8, hatch="/"),
     "held": Look("#444444", "#bbbbbb", width=0.8, opacity=0.55),
     "sensor": Look("#c79000", "#ffd454", symbol="triangle-up"),

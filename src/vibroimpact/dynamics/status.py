@@ -66,6 +66,7 @@ def status_of(run: EndedRun) -> str:
         )
     if outcome is Outcome.FAILED:
         return f"Failed {after}: {why_failed(run.energy)}"
+    assert outcome.at_rest, outcome
     if run.problem.shaken:
         when = _time(run, float(run.rest.time[0]), 7)
         until = "before the run ends" if run.problem.duration else "again"

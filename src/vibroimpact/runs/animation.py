@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from vibroimpact.arrays import Floats
-from vibroimpact.charts.palette import DIVERGING, INK
+from vibroimpact.charts.palette import DIVERGING, INK, LOOKS
 from vibroimpact.charts.print_style import print_style
 from vibroimpact.report.projection import TILT, depth, project
 from vibroimpact.results.deflection import Deflection
@@ -122,7 +122,11 @@ class _AnimationScene:
             alpha=0.25,
         )
         self.ball = Circle(
-            (0.0, 0.0), self.radius, facecolor="#8d8d8d", edgecolor=INK.light, linewidth=1.0
+            (0.0, 0.0),
+            self.radius,
+            facecolor=LOOKS["sphere"].light,
+            edgecolor=INK.light,
+            linewidth=1.0,
         )
         self.shine = Ellipse(
             (0.0, 0.0),

@@ -20,6 +20,7 @@ _MOTIONS = {
 }
 """Bands that sum two entries of the ledger: label, kinetic and strain energy."""
 
+# at most one of two terms with the same role is large in most runs
 _ROLES = {
     "contact_dissipated_J": "contact damping",
     "plastic_work_J": "plastic work",

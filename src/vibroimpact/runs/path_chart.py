@@ -64,7 +64,7 @@ def path_chart(result: Result, history: Mapping[str, Floats], caption: str) -> C
     size = max(right - left, back - front)
     marks += [
         Line(x, y, "path of the centre", "detail"),
-        Outline(*disc(float(x[-1]), float(y[-1]), radius), role="ball"),
+        Outline(*disc(float(x[-1]), float(y[-1]), radius), role="sphere"),
         Points(
             places[:, 0],
             places[:, 1],

@@ -116,7 +116,7 @@ def _from_the_side(result: Result, extent: Extent | None) -> Panel:
     high = max(3.4 * radius, 0.42 * half)
     marks += [
         Line(np.array([at, at]), np.array([0.0, high - radius]), role="dotted"),
-        Outline(at + radius * np.cos(_TURN), high + radius * np.sin(_TURN), role="ball"),
+        Outline(at + radius * np.cos(_TURN), high + radius * np.sin(_TURN), role="sphere"),
         *(
             [Label(at - radius, high, f"radius {as_given(radius, 'm')}", "right")]
             if _knows_radius(result)
@@ -192,7 +192,7 @@ def _from_above(result: Result, extent: Extent) -> Panel:
     marks += [
         Outline(*outline, name="support", role="held") for outline in support_outlines(result)
     ]
-    marks.append(Outline(x + radius * np.cos(_TURN), y + radius * np.sin(_TURN), role="ball"))
+    marks.append(Outline(x + radius * np.cos(_TURN), y + radius * np.sin(_TURN), role="sphere"))
     low = min(front, y - radius) - 0.07 * (back - front)
     beside = max(right, x + radius) + 0.05 * (right - left)
     marks += dimension((left, low), (right, low), as_given(right - left, "m"), "below")

@@ -57,8 +57,9 @@ _FIRST_LEFT_OUT = (
 )
 """Columns left out in a narrow terminal, in this order, until the others fit."""
 
-_FIGURES_SHOWN = 6  # significant figures in a table
-_DIGITS = 5
+_FIGURES_SHOWN = 6  # significant figures in a table of peaks
+_DECIMALS_OF_RATIO = 5  # in the table of impacts
+_SIGNIFICANT = 5  # figures of other values there
 
 _ROUNDING = 1e-12
 """Part of the energy put in up to which an energy is a rounding error."""
@@ -364,11 +365,11 @@ def _cells(name: str, values: Floats) -> tuple[str, Floats, list[str]]:
     """Return the unit in which a column is shown, its values in this unit, and their texts."""
     column = ALL_IMPACT_COLUMNS[name]
     if column.values == "ratio":
-        return "", values, [fixed(value, _DIGITS) for value in values]
+        return "", values, [fixed(value, _DECIMALS_OF_RATIO) for value in values]
     scale = multiple(column.unit, values)
     values = values / scale.size
     if column.values == "time":
         # times are compared with each other: their absolute resolution is a microsecond, also late
         # in a run
         return scale.unit, values, [fixed(value, 6 if scale.unit == "s" else 3) for value in values]
-    return scale.unit, values, column_texts(values, _DIGITS)
+    return scale.unit, values, column_texts(values, _SIGNIFICANT)

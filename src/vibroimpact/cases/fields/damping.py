@@ -130,4 +130,6 @@ def damping_table(value: Any) -> Any:
             return {"ratios": list(value.damping_ratios)}
         case RatioTable():
             return {"frequencies": list(value.frequencies), "ratios": list(value.damping_ratios)}
-    return value
+        case None:
+            return None
+    raise AssertionError(f"{value!r} is none of the damping models")

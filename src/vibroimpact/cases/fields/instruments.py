@@ -65,7 +65,7 @@ def instrument_fields() -> dict[str, tuple[Any, Any]]:
 @dataclass(frozen=True)
 class _OfSignal:
     """Annotation of a quantity in the unit of the sensor's signal, which only the sensor
-    knows: `in_unit` reads it.
+    knows: `read_in_unit` reads it.
     """
 
     meaning: str

@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.cases.limits.conditions import Conditions
 from vibroimpact.cases.limits.limit import Limit
-from vibroimpact.dynamics.fluids.fluid import HIGHEST_REYNOLDS
+from vibroimpact.dynamics.core.fall import HIGHEST_REYNOLDS
 
 _SPEED_OF_SOUND = 343.0
 """Speed of sound in air at 20 C [m/s]."""

@@ -43,6 +43,13 @@ STATES = 18
 RUBBED, MICROSLIP = range(2)
 """Energies that friction has taken so far, and the part of it that was lost in microslip [J]."""
 
+FIRST_FURTHER = 15
+COLUMNS = FIRST_FURTHER + 6
+OBLIQUE_COLUMNS = COLUMNS + 19
+"""Numbers of an impact: those of its table, with further ones, with those of the motion along the
+plate.
+"""
+
 (
     IMPACT,
     TOUCH,
@@ -59,30 +66,28 @@ RUBBED, MICROSLIP = range(2)
     ASKED,
     TIME_OF_INDENTATION,
     TIME_OF_FORCE,
-) = range(15)
+) = range(FIRST_FURTHER)
 """Columns of the table of impacts, in the order of `columns.IMPACT_COLUMNS`."""
 
-COMPRESSION, DAMPED, RELEASE_GAP, RELEASE_VELOCITY, LEFT_STORED, DENT_BEFORE = range(15, 21)
+COMPRESSION, DAMPED, RELEASE_GAP, RELEASE_VELOCITY, LEFT_STORED, DENT_BEFORE = range(
+    FIRST_FURTHER, COLUMNS
+)
 """Further ones: duration of the compression [s], energy lost in damping [J]; gap [m], upward
 velocity [m/s] and stored energy [J] at the end of the contact; the deepest indentation there before
 it [m].
 """
 
-COLUMNS = 21
-
-ALONG = 21
+ALONG = COLUMNS
 """The first of those of the motion along the plate, in the order of
 `columns.OBLIQUE_IMPACT_COLUMNS`.
 """
 
 TANGENTIAL_RESTITUTION, REBOUND_ANGLE, FRICTION_LOST, MICROSLIP_LOST, GROSS_SLIP_LOST = range(
-    33, 38
+    COLUMNS + 12, COLUMNS + 17
 )
 
-RELEASE_X, RELEASE_Y = range(38, 40)
+RELEASE_X, RELEASE_Y = range(COLUMNS + 17, OBLIQUE_COLUMNS)
 """Further ones: where the centre is at the end of the contact [m]."""
-
-OBLIQUE_COLUMNS = 40
 
 AT_START, IN_FLIGHT, AT_TOUCH = -3, -2, -1
 """Phases of the run of a drop; one that has ended has a number of `ENDINGS`."""
@@ -182,8 +187,9 @@ class ObliqueDrops(NamedTuple):
 
 
 class FreeFall(NamedTuple):
-    """A flight above a plate at rest: start, top and next touch [s], and the speed of that [m/s];
-    times are infinite if they do not come. is_beside: is the centre beside the plate then?
+    """A flight above a plate: start, top and next touch [s], and the speed of that [m/s]; times are
+    infinite if they do not come. speed: NaN where bodies vibrate, the plate moves, or the flight is
+    made outside the core. is_beside: is the centre beside the plate at the touch?
     """
 
     start: float

@@ -18,11 +18,17 @@ from vibroimpact.dynamics.core.fall_records import Corners, Falling, FallRule, F
 GIVEN_TIME, AT_TOP, AT_GAP = 0, 1, 2
 """What ends a piece: a given time; the top of the flight; a height fallen through."""
 
+HIGHEST_REYNOLDS = 3e5
+"""Reynolds number up to which `drag_coefficient` holds.
+
+The boundary layer of a smooth sphere becomes turbulent above it.
+"""
+
 _SWEEPS = 60
 _CLOSE = 1e-13  # of the speeds: change by the last sweep, which is 10 times the error that is left
 _LONGEST = 0.25  # of the time constant of the drag: length of a piece
 _STEADY = 1e-14  # of gravity: an acceleration that counts as none
-_STILL = 1e-30  # m/s
+STILL = 1e-30  # m/s, for a speed of zero, at which Stokes' drag is none
 
 
 @scalar
@@ -52,8 +58,8 @@ def drag_coefficient(reynolds: Array) -> Array:
 
 @compiled
 def drag_of(falling: Falling, drop: int, speed: float) -> float:
-    """Return by how much the fluid slows a sphere down at a speed [m/s^2]."""
-    fast = max(speed, _STILL)
+    """Return by how much the fluid slows a sphere down at a speed [m/s^2], as `Fluid.drag`."""
+    fast = max(speed, STILL)
     coefficient = falling.coefficient[drop]
     if np.isnan(coefficient):
         coefficient = drag_coefficient(falling.reynolds[drop] * fast)
@@ -78,7 +84,7 @@ def accelerate(
     """
     speed = size_of(velocity, column)
     drag = drag_of(falling, drop, speed)
-    part = drag / max(speed, _STILL)
+    part = drag / max(speed, STILL)
     for component in range(len(velocity)):
         acceleration[component, into] = (
             falling.gravity[component, drop] - part * velocity[component, column]
@@ -94,7 +100,7 @@ def keeps(falling: Falling, drop: int, velocity: Matrix, column: int) -> bool:
     pull = size_of(falling.gravity, drop)
     if pull > 0.0:
         return size_of(acceleration, 0) <= _STEADY * pull
-    return size_of(velocity, column) <= _STILL
+    return size_of(velocity, column) <= STILL
 
 
 @compiled
@@ -104,10 +110,10 @@ def longest_piece(falling: Falling, drop: int, velocity: Matrix, column: int) ->
         return np.inf
     speed = size_of(velocity, column)
     pull = size_of(falling.gravity, drop)
-    some = max(speed, _STILL)
+    some = max(speed, STILL)
     time = some / drag_of(falling, drop, some)
     for _ in range(6):  # the constant that belongs to the speed after it
-        some = max(speed + pull * time, _STILL)
+        some = max(speed + pull * time, STILL)
         time = math.sqrt(time * some / drag_of(falling, drop, some))
     return 0.5 * _LONGEST * time
 

@@ -168,7 +168,7 @@ def next_flight(
         top = start + velocity / gravity if gravity != 0.0 else math.inf
     level, _, _, _, _ = levels_at(manner.addresses[2])(drop.coefficients)
     touch = start + next_touch(system, state, level, np.inf)
-    return FreeFall(start, top, touch, 0.0, False)
+    return FreeFall(start, top, touch, math.nan, False)
 
 
 @compiled

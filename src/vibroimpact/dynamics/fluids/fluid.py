@@ -9,15 +9,8 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from vibroimpact.arrays import Array, Bools, Drops
-from vibroimpact.dynamics.core.fall import drag_coefficient
+from vibroimpact.dynamics.core.fall import STILL, drag_coefficient
 from vibroimpact.errors import InputError
-
-HIGHEST_REYNOLDS = 3e5
-"""Reynolds number up to which `drag_coefficient` holds; the boundary layer of a smooth
-sphere becomes turbulent above it.
-"""
-
-_STILL = 1e-30  # m/s, for a speed of zero, at which Stokes' drag is none
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -101,7 +94,7 @@ class Fluid:
 
         .. math:: a = \frac{3}{8} \frac{\rho_f}{\rho + C_a \rho_f}\, C_d \frac{v^2}{R}
 
-        with the added mass C_a.
+        with the added mass C_a. Flights are computed with `drag_of` in the core, which is the same.
 
         Parameters
         ----------
@@ -110,7 +103,7 @@ class Fluid:
         radius, density : float or array
             Of the sphere [m], [kg/m^3].
         """
-        fast = np.maximum(speed, _STILL)
+        fast = np.maximum(speed, STILL)
         constant = self.constant_coefficient
         coefficient = (
             drag_coefficient(self.reynolds_number(fast, radius)) if constant is None else constant

@@ -55,7 +55,7 @@ class ToldFlights:
         """
         is_beside = self.oblique is not None and self.oblique.is_beside(flight, touch)
         top = float(flight.apex()[0][0])
-        fall = FreeFall(float(flight.start[0]), top, touch, 0.0, is_beside)
+        fall = FreeFall(float(flight.start[0]), top, touch, np.nan, is_beside)
         end, ending = first_end(self._stops, fall, impacts)
         return (end, ending) if touch >= end else (touch, AT_TOUCH)
 

@@ -76,7 +76,7 @@ class Problem:
         What is around sphere and plate, in place of air: buoyancy, drag and added mass act in
         flight, and a film takes from the restitution of the law, which is that in air. By default
         nothing.
-    impacts : int, optional
+    impacts : int, default 5
         Stop after so many impacts, at the top of the last rebound. None: go on to rest.
     duration : float, optional
         Stop at this time [s]; an impact under way is finished first, but not a sphere that rides on

@@ -132,7 +132,7 @@ def _sphere(radius: float, drop: float) -> list[Mark]:
     phrase = f"{text(drop, 'm', 1)}, not to scale"
     return [
         Line(np.array([x, x]), np.array([ground, height]), role="reference"),
-        Outline(x + radius * np.cos(_ROUND), height + radius * np.sin(_ROUND), role="ball"),
+        Outline(x + radius * np.cos(_ROUND), height + radius * np.sin(_ROUND), role="sphere"),
         _line(leads, "muted"),
         Arrow((beside, ground), (beside, height), both=True),
         Label(beside, ground + 0.62 * (height - ground), phrase, "left"),
