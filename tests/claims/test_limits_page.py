@@ -12,12 +12,12 @@ from support import plain_case
 from vibroimpact.cases import sensor_doubts
 from vibroimpact.cases.elastic import modes
 from vibroimpact.cases.limits.limit import limits
-from vibroimpact.cases.validity import edge, fast_flight, modes_left_out
+from vibroimpact.cases.validity import edge, modes_left_out
 from vibroimpact.cases.validity.adhesion import WORK_OF_ADHESION
 from vibroimpact.cases.validity.finite_sphere import force_lacking
 from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE
 from vibroimpact.dynamics.core.fall import HIGHEST_REYNOLDS
-from vibroimpact.dynamics.fluids.air import AIR_DENSITY
+from vibroimpact.dynamics.fluids.air import AIR_DENSITY, SPEED_OF_SOUND
 from vibroimpact.dynamics.fluids.liquid import CRITICAL_STOKES
 from vibroimpact.structures.sphere_compliance import FITTED
 
@@ -62,7 +62,7 @@ def test_thresholds() -> None:
     says(
         PAGE,
         "the speed of sound in air at 20 C, {} m/s, for flights in air | above {} |",
-        fast_flight._SPEED_OF_SOUND,
+        SPEED_OF_SOUND,
         threshold("mach"),
     )
     says(PAGE, "distance of `exponent` from Hertz's {}, where", HERTZ)

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.bodies.ball import ball_volume, mean_density
 from vibroimpact.cases.case import Case
-from vibroimpact.dynamics.statement.problem import STANDARD_GRAVITY
 from vibroimpact.errors import InputError
 from vibroimpact.studies.computation.compute_points import compute_points
 from vibroimpact.studies.computation.study import Study
@@ -20,6 +19,7 @@ from vibroimpact.studies.planning.axes import Values
 from vibroimpact.studies.planning.population import CLASS, ROCK
 from vibroimpact.studies.planning.sweep import Sweep
 from vibroimpact.studies.planning.swept_keys import case_at
+from vibroimpact.units.display import STANDARD_GRAVITY
 
 _COLUMNS = ("first_approach_speed_m_s", "first_restitution_achieved", "first_duration_s")
 _KEYS_OF_RIGID_PLATE = ("size", "material", "inclination")

@@ -149,10 +149,10 @@ def impacts_expected(case: Case) -> int:
 def _rest_speed(case: Case) -> float:
     """Return the speed below which the sphere is at rest where a case does not state it [m/s].
 
-    From this speed the sphere falls by its static indentation.
+    From it a sphere would rise by its static indentation, as in `core.drops.default_rest_speed`.
     """
     gravity = case.drop.gravity
-    law = contact_laws_of(case)[-1]
+    law = contact_laws_of(case)[0]
     sag = 0.0
     if isinstance(law, CompliantLaw):
         weight = float(contact_pair(case).effective_mass) * gravity

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.dynamics.statement.problem import STANDARD_GRAVITY
 from vibroimpact.results.result import Result
 from vibroimpact.runs.below import body_below, is_free_below, level_below
 from vibroimpact.runs.chart_data import contacts_with_duration
@@ -12,7 +11,7 @@ from vibroimpact.runs.scene import exaggeration
 from vibroimpact.runs.sensor_charts import MOST, drawn_sensors
 from vibroimpact.runs.spectrum import amplitude_spectrum, first_response
 from vibroimpact.runs.tables import energy_text, impact_text, significant_figures
-from vibroimpact.units.display import certain, digits, fixed, text
+from vibroimpact.units.display import STANDARD_GRAVITY, certain, digits, fixed, text
 
 _NOTHING_LEFT = 1e-9  # of the energy put in
 

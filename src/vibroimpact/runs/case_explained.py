@@ -15,8 +15,6 @@ from vibroimpact.cases.costs import describe_costs
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of, first_restitution
 from vibroimpact.cases.fields.fluid import fluid_words
-from vibroimpact.cases.fields.quantities import quantity_of
-from vibroimpact.cases.fields.section import Section
 from vibroimpact.cases.fields.sensor import SensorSection
 from vibroimpact.cases.rigid.oblique import friction_law_of, is_oblique
 from vibroimpact.cases.rigid.pair import ball_of, contact_pair, is_free_sphere, sphere_density
@@ -34,12 +32,11 @@ from vibroimpact.cases.rigid.rigid_problem import (
 )
 from vibroimpact.contact.law import CompliantLaw, unit_of
 from vibroimpact.dynamics.fluids.liquid import restitution_kept
-from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
 from vibroimpact.dynamics.sensors.instruments.registry import instruments
-from vibroimpact.dynamics.statement.problem import STANDARD_GRAVITY
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.report.terminal_report import warning_lines
 from vibroimpact.report.terminal_table import facts
+from vibroimpact.units.display import STANDARD_GRAVITY
 
 # relative difference of the mean density of a sphere from that of its material, up to which it may
 # be solid
@@ -306,43 +303,10 @@ def _instrument(sensor: SensorSection) -> list[str]:
     if sensor.instrument is None:
         return []
     stated = sensor.instrument_in_case()
-    phrase = "; ".join(
-        _accelerometer(stated) if isinstance(stated, Accelerometer) else _properties(sensor.table)
-    )
+    phrase = ""
+    if stated is not None and sensor.table is not None:
+        phrase = "; ".join(stated.stated_properties())
     return [f"by {instruments()[sensor.instrument].noun} ({phrase or 'ideal'})"]
-
-
-def _accelerometer(meter: Accelerometer) -> list[str]:
-    """Return the properties of an accelerometer in words."""
-    given = [
-        ("resonance", meter.resonance, f"Hz with a damping ratio of {meter.damping_ratio:g}"),
-        (
-            "range",
-            meter.range,
-            f"m/s2, {(meter.range or 0.0) / STANDARD_GRAVITY:.4g} times standard gravity",
-        ),
-        ("noise", meter.noise or None, "m/s2"),
-        ("resolution", meter.resolution, "m/s2"),
-        ("sensitivity", meter.sensitivity, "V s2/m"),
-    ]
-    return [f"{name} {value:g} {unit}" for name, value, unit in given if value is not None]
-
-
-def _properties(table: Section | None) -> list[str]:
-    """Return the properties of another instrument in words."""
-    if table is None:
-        return []
-    given = [
-        (name, getattr(table, name), quantity_of(info))
-        for name, info in type(table).model_fields.items()
-    ]
-    phrase = [
-        (name.replace("_", " "), value, "" if quantity is None else quantity.unit.replace("^", ""))
-        for name, value, quantity in given
-    ]
-    return [
-        f"{name} {value:g} {unit}".rstrip() for name, value, unit in phrase if value is not None
-    ]
 
 
 def _electronics(sensor: SensorSection) -> list[str]:

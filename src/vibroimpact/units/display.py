@@ -19,6 +19,9 @@ class Multiple(NamedTuple):
     size: float
 
 
+STANDARD_GRAVITY = 9.80665
+"""Standard acceleration of gravity [m/s^2], CGPM 1901, in which accelerations are told as well."""
+
 MISSING = "\u2013"
 """Text of a missing value: an en dash."""
 

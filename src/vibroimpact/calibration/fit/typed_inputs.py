@@ -16,9 +16,9 @@ from vibroimpact.calibration.fit.matching import Tunable
 from vibroimpact.calibration.observed.inputs import EARTH, Input, as_input
 from vibroimpact.calibration.observed.observations import Effects, Observations
 from vibroimpact.cases.case import Case
-from vibroimpact.dynamics.statement.problem import STANDARD_GRAVITY
 from vibroimpact.errors import InputError
 from vibroimpact.materials import material_library
+from vibroimpact.units.display import STANDARD_GRAVITY
 from vibroimpact.units.written import Written
 
 _KEYS = {

@@ -8,8 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from vibroimpact.dynamics.statement.problem import STANDARD_GRAVITY
-from vibroimpact.units.display import multiple
+from vibroimpact.units.display import STANDARD_GRAVITY, multiple
 from vibroimpact.units.written import Written, read_written
 
 EARTH = Written(

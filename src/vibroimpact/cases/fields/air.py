@@ -41,7 +41,7 @@ class AirTable(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _one_of_two(cls, table: Any) -> Any:
+    def _viscosity_or_coefficient(cls, table: Any) -> Any:
         if isinstance(table, dict) and {"viscosity", "drag_coefficient"} <= table.keys():
             raise InputError(
                 "a constant drag coefficient does not depend on the viscosity; "

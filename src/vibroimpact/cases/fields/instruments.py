@@ -37,7 +37,7 @@ def _field_of(item: DataclassField[Any]) -> tuple[Any, Any]:
     """Return annotation and default of a property of an instrument, as pydantic takes them."""
     meaning = item.metadata["meaning"]
     allowed = item.metadata["range"]
-    if isinstance(item.default, int):
+    if item.name == "seed":
         return Seed, Field(item.default, description=meaning)
     annotation = Annotated[float, Quantity(item.metadata["unit"], meaning, allowed)]
     if item.default is MISSING:

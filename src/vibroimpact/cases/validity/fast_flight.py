@@ -11,8 +11,8 @@ from vibroimpact.arrays import Array
 from vibroimpact.cases.limits.conditions import Conditions
 from vibroimpact.cases.limits.limit import Limit
 from vibroimpact.dynamics.core.fall import HIGHEST_REYNOLDS
+from vibroimpact.dynamics.fluids.air import SPEED_OF_SOUND
 
-_SPEED_OF_SOUND = 343.0
 """Speed of sound in air at 20 C [m/s]."""
 
 
@@ -62,7 +62,7 @@ def _drag_sentence(drop: Conditions, number: float) -> str:
 def _mach(drops: Conditions) -> Array:
     if drops.case["drop"].get("air") is None:
         return math.nan
-    return _speed(drops) / _SPEED_OF_SOUND
+    return _speed(drops) / SPEED_OF_SOUND
 
 
 def _sound_sentence(drop: Conditions, number: float) -> str:

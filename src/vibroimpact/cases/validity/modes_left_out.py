@@ -13,9 +13,8 @@ from vibroimpact.cases.limits.limit import Limit, in_kilohertz, two_digits
 from vibroimpact.units.display import text
 
 _TRUNCATED = 0.05  # allowed relative change of the largest force by truncated modes
-# periods of the highest mode in a contact: doubted below, and recommended
-_CYCLES = 1.5
-_ENOUGH = 3.0
+_CYCLES = 1.5  # periods of the highest mode in a contact, below which there is a doubt
+_ENOUGH = 3.0  # periods that the remedy asks for
 
 
 def _number(body: str, drops: Conditions) -> Array:
@@ -47,14 +46,15 @@ LIMITS = tuple(
     Limit(
         name=f"{body}_modes",
         title=f"modes of the {body} left out",
-        meaning=f"change of the largest force by the modes of the {body} left out, over 5 %; or "
-        "1.5 over the periods of the highest in the contact, if that is more",
+        meaning=f"change of the largest force by the modes of the {body} left out, over "
+        f"{100.0 * _TRUNCATED:g} %; or {_CYCLES} over the periods of the highest in the contact, "
+        "if that is more",
         threshold=1.0,
         number=partial(_number, body),
         sentence=partial(_sentence, body),
         shown=lambda ratio: (
-            f"{two_digits(ratio)} times the limit (5 % of the largest force, or 1.5 "
-            "periods of the highest mode in a contact)"
+            f"{two_digits(ratio)} times the limit ({100.0 * _TRUNCATED:g} % of the largest force, "
+            f"or {_CYCLES} periods of the highest mode in a contact)"
         ),
         without_case=True,
     )

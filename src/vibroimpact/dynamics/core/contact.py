@@ -54,11 +54,11 @@ of the steps; not to be integrated; near equilibrium, which is to be looked at; 
 further part.
 """
 
-_ROUNDING = 1e-14  # of the deepest indentation
+ROUNDING = 1e-14  # of the deepest indentation
 _TIME_ROUNDING = 1e-11  # of the duration of a contact
-_NO_FORCE = 1e-10  # of the largest force
-_ZERO_RATE = 1e-9  # of the speed of the motion
-_SHORTEST = 1e-12  # of the duration of a contact
+NO_FORCE = 1e-10  # of the largest force
+ZERO_RATE = 1e-9  # of the speed of the motion: a slower approach counts as having turned already
+SHORTEST = 1e-12  # of the duration of a contact
 _LONG = 10.0  # in durations of a contact: a sphere in contact for longer rides
 _NOTHING = 2e-15  # of the energy of the motion: less is a rounding error
 
@@ -191,24 +191,24 @@ def follow_contact(
         if not fresh:  # events at the end of the last stretch: it is within rounding of them
             approach, rate = approach_of(system, state)
             overlap = max(approach - law.release_level, 0.0)
-            if overlap <= _ROUNDING * deepest and rate < 0.0:
+            if overlap <= ROUNDING * deepest and rate < 0.0:
                 lose_at_end(parts, lost, energy_held(law, manner, law.release))
                 outcome = RELEASED
                 break
-            if manner.tension == TENSION_CUT and force <= _NO_FORCE * largest_force and trend < 0.0:
+            if manner.tension == TENSION_CUT and force <= NO_FORCE * largest_force and trend < 0.0:
                 if separates_at_no_force(system, law, manner, state):
                     lose_at_end(parts, lost, energy_held(law, manner, delta))
                     outcome = RELEASED
                     break
                 pushes = False
                 continue
-            turned = closing <= _ZERO_RATE * manner.motion_speed and delta > law.memory_level
+            turned = closing <= ZERO_RATE * manner.motion_speed and delta > law.memory_level
         if turned:
             peaks = peaks_since(bases, law, peaks, parts, under_law, largest_force, deepest)
             under_law = parts.written[PARTS]
             plastic += plastic_work(law, delta)
             law, number = law_turned(law, number, delta, parts)
-        if next_length < _SHORTEST * manner.span:
+        if next_length < SHORTEST * manner.span:
             outcome = TOO_STIFF
             break
 

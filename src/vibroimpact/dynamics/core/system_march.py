@@ -18,6 +18,10 @@ from vibroimpact.compiled import Lent, compiled
 from vibroimpact.dynamics.core.attempt import attempt, balance_of, basis_of, time_at, up_to_event
 from vibroimpact.dynamics.core.coasting import end_of_coasting
 from vibroimpact.dynamics.core.contact import (
+    NO_FORCE,
+    ROUNDING,
+    SHORTEST,
+    ZERO_RATE,
     energy_held,
     indentation_in,
     plastic_work,
@@ -114,10 +118,6 @@ ENDED, FULL, TOO_STIFF, PAUSED = range(4)
 be integrated; it has tried as many stretches as it was to.
 """
 
-_ROUNDING = 1e-14  # of the deepest indentation
-_NO_FORCE = 1e-10  # of the largest force
-_ZERO_RATE = 1e-9  # of the speed of the motion: a slower approach counts as having turned already
-_SHORTEST = 1e-12  # of the duration of a contact
 _TOUCH_SLACK = 1e-12
 """Of the deepest indentation: a smaller overlap is no touch while other contacts push."""
 _SAME_TIME = 1e-13
@@ -176,7 +176,7 @@ def march_on(
             continue
         if not are_same(group.contacts, pushing):
             group = group_of(points, pushing, len(march.displacement))
-        if march.numbers[NEXT_LENGTH] < _SHORTEST * shortest_span(march, pushing):
+        if march.numbers[NEXT_LENGTH] < SHORTEST * shortest_span(march, pushing):
             return TOO_STIFF
         go_through_stretch(
             bases, system, points, march, parts, group, no_friction, manner.tolerance, longest
@@ -535,12 +535,12 @@ def has_ended_at_once(
         state = state_at(points, contact, state_now(march))
         approach, rate = approach_of(system_at(points, contact), state)
         overlap = max(approach - law.release_level, 0.0)
-        if overlap <= _ROUNDING * numbers[DEEPEST] and rate < 0.0:
+        if overlap <= ROUNDING * numbers[DEEPEST] and rate < 0.0:
             separate(points, march, parts, contact, law.release)
             return True
         if (
             march.acting.tension[contact] == TENSION_CUT
-            and numbers[FORCE] <= _NO_FORCE * numbers[LARGEST_FORCE]
+            and numbers[FORCE] <= NO_FORCE * numbers[LARGEST_FORCE]
             and numbers[TREND] < 0.0
         ):
             if separates_then(points, march, contact):
@@ -548,7 +548,7 @@ def has_ended_at_once(
             else:
                 march.phase[contact] = RECOILING
             return True
-        has_turned = numbers[RATE] <= _ZERO_RATE * numbers[MOTION_SPEED]
+        has_turned = numbers[RATE] <= ZERO_RATE * numbers[MOTION_SPEED]
         if has_turned and numbers[DELTA] > law.memory_level:
             remember(march, parts, contact)
     return False

@@ -13,6 +13,8 @@ from vibroimpact.errors import InputError
 AIR_DENSITY, AIR_VISCOSITY = 1.2, 1.81e-5
 """Density [kg/m^3] and viscosity [Pa s] of air at 20 C and sea level."""
 
+SPEED_OF_SOUND = 343.2  # m/s, of dry air at 20 C: sqrt(1.4 * 287.05 J/(kg K) * 293.15 K)
+
 # largest density, relative to the sphere's: buoyancy then takes as much of gravity, and is left out
 _DENSEST = 0.02
 

@@ -28,12 +28,11 @@ from vibroimpact.dynamics.statement.steady import steady_phasors
 from vibroimpact.dynamics.statement.tolerance import DEFAULT_TOLERANCE, check_tolerance
 from vibroimpact.errors import InputError
 from vibroimpact.resolved_case import ResolvedCase
+from vibroimpact.units.display import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalModel  # which loads sparse matrices
 
-STANDARD_GRAVITY = 9.80665
-"""Standard acceleration of gravity [m/s^2], CGPM 1901."""
 
 MOST_IMPACTS = 100_000
 """Number of impacts at which a run without a given number is stopped, if it has not come

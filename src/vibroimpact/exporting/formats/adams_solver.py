@@ -22,7 +22,7 @@ _NAMES = Names(
 
 
 def write(drop: Drop) -> dict[str, bytes]:
-    """Return the dataset and the command file.
+    """Return the dataset and the file of solver commands.
 
     Raises
     ------

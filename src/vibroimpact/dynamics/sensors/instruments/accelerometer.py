@@ -12,6 +12,7 @@ from vibroimpact.dynamics.sensors.instruments.instrument import (
     Quantity,
 )
 from vibroimpact.dynamics.sensors.instruments.pole_pairs import Section
+from vibroimpact.units.display import STANDARD_GRAVITY
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,23 @@ class Accelerometer(InstrumentInCase):
         above=0,
         default=None,
     )
+
+    def stated_properties(self) -> list[str]:
+        """Return its properties in words, with its range in standard gravity as well."""
+        properties = []
+        if self.resonance is not None:
+            damping = f"with a damping ratio of {self.damping_ratio:g}"
+            properties.append(f"resonance {self.resonance:g} Hz {damping}")
+        if self.range is not None:
+            in_gravity = f"{self.range / STANDARD_GRAVITY:.4g} times standard gravity"
+            properties.append(f"range {self.range:g} m/s2, {in_gravity}")
+        if self.noise:
+            properties.append(f"noise {self.noise:g} m/s2")
+        if self.resolution is not None:
+            properties.append(f"resolution {self.resolution:g} m/s2")
+        if self.sensitivity is not None:
+            properties.append(f"sensitivity {self.sensitivity:g} V s2/m")
+        return properties
 
     @property
     def quantity(self) -> Quantity:

@@ -103,6 +103,16 @@ class InstrumentInCase:
         """Return whether it has properties without a default."""
         return any(item.default is MISSING for item in fields(cls))
 
+    def stated_properties(self) -> list[str]:
+        """Return its properties in words, with their units."""
+        properties = []
+        for item in fields(self):
+            value = getattr(self, item.name)
+            if value is not None:
+                unit = item.metadata["unit"].replace("^", "")
+                properties.append(f"{item.name.replace('_', ' ')} {value:g} {unit}".rstrip())
+        return properties
+
     def instrument(self) -> Instrument:
         """Return the instrument as the measuring chain takes it."""
         return cast("Instrument", self)  # of which a case says all, unless a subclass says more

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vibroimpact.contact.parameters import parameter
-from vibroimpact.dynamics.fluids.air import AIR_DENSITY
+from vibroimpact.dynamics.fluids.air import AIR_DENSITY, SPEED_OF_SOUND
 from vibroimpact.dynamics.sensors.instruments.instrument import (
     Direction,
     Instrument,
@@ -15,7 +15,6 @@ from vibroimpact.dynamics.sensors.instruments.instrument import (
 )
 from vibroimpact.dynamics.sensors.instruments.pole_pairs import Section
 
-SPEED_OF_SOUND = 343.2  # m/s, of dry air at 20 C: sqrt(1.4 * 287.05 J/(kg K) * 293.15 K)
 # m: the paths of sound to a closer point would take long to integrate, and no microphone is as
 # small
 _NEAREST = 1e-3
