@@ -37,7 +37,7 @@ _FALLS_OF_MAP = 8000
 
 @dataclass(frozen=True, eq=False)
 class Bound(Reported, reported_in="vibroimpact.bayes_error.report"):
-    """The Bayes error of a population.
+    """Lowest error of any classifier (Bayes error) for a population.
 
     It is the lowest error of a classifier that sees only the measured quantities, with the stated
     scatter.

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Body:
-    """Body of an impact, falling or fixed.
+    """A body that takes part in an impact: its mass, contact offset, and modes if it is elastic.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ def rigid_sphere(
     mass: Array | None = None,
     inertia: Array | str | None = None,
 ) -> Body:
-    r"""Return a sphere whose only compliance is that of its contact.
+    r"""Return a rigid sphere, which is compliant at its contact alone.
 
     It is a solid ball, unless its mass or its moment of inertia are given.
 
@@ -107,7 +107,7 @@ def _inertia(inertia: Array | str, mass: Array, radius: Array) -> Array:
 
 
 def rigid_plate(thickness: Array = 0.0) -> Body:
-    """Return a fixed plate that does not deform.
+    """Return a rigid plate that is fixed.
 
     Parameters
     ----------

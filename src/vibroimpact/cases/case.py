@@ -12,7 +12,7 @@ from vibroimpact.dynamics.statement.problem import Problem
 
 
 class Case(CaseTable):
-    """A case: the file, validated, in SI.
+    """A validated case, in SI units.
 
     Read one with `load_case` or `case_of`; `to_problem` states it for the simulation.
 

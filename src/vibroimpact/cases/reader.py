@@ -175,7 +175,7 @@ def prefix_errors(source: str | PathLike[str], read: Callable[[], Read]) -> Read
 
 
 def case_of(table: Mapping[str, Any]) -> Case:
-    """Return the case of a mapping with the structure of a case file.
+    """Return a case from a dictionary with the structure of a case file.
 
     Raises
     ------

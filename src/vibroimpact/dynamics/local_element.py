@@ -26,7 +26,7 @@ def identify_local_element(
     separation_speed: float | None = None,
     rebound_height: float | None = None,
 ) -> tuple[float, float]:
-    """Return stiffness [N/m] and damping [N s/m] of the local element of a measured impact.
+    """Identify the stiffness [N/m] and damping [N s/m] of a contact from a measured impact.
 
     Parameters
     ----------

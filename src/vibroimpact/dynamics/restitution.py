@@ -29,7 +29,7 @@ _INVERSE_TOLERANCE = 1e-12
 def achieved_restitution(
     law: ContactLaw, mass: Array, speed: Array, *, tolerance: float = DEFAULT_TOLERANCE
 ) -> Array:
-    """Return the restitution that a law achieves.
+    """Return the coefficient of restitution that results from a contact law.
 
     It is that of its closed form where there is one, else that of an integration.
 
@@ -144,7 +144,7 @@ def _by_integration(law: ContactLaw, mass: Array, speed: Array, tolerance: float
 
 
 def law_achieving(law: Law, restitution: Array, mass: Array, speed: Array) -> Law:
-    """Return a law whose free parameter is set so that it achieves a given restitution.
+    """Tune the free parameter of a contact law to a given coefficient of restitution.
 
     Parameters
     ----------

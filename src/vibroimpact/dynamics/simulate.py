@@ -12,7 +12,7 @@ from vibroimpact.errors import ComputationError, InputError
 
 
 def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Response:
-    """Return the response of a sphere that falls and bounces until a stop rule.
+    """Simulate a sphere that falls and bounces until a stop criterion ends the run.
 
     Flight is exact. A contact is solved by Gauss collocation of whole phases, speed over
     indentation, or, where that does not come out to the tolerance, in steps of order 8, in a

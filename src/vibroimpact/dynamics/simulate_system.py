@@ -216,7 +216,7 @@ class SystemResponse:
 def simulate_system(
     system: System, *, duration: float, progress: Callable[[float], None] | None = None
 ) -> SystemResponse:
-    """Simulate several bodies with several contacts.
+    """Simulate a system of bodies that meet at point contacts.
 
     Motion between contacts is in closed form; contacts are integrated to the tolerance of the
     system, and all that act at the same time are solved as one system of equations.

@@ -31,7 +31,7 @@ _UNIT = 1e-9  # largest deviation of the length of a normal from one
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MovingBody:
-    """A body of a system: free to move, or held.
+    """A body of a system, free or fixed.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ class PointContact:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class System:
-    """Several bodies with several contacts.
+    """A system of bodies that meet at point contacts.
 
     Parameters
     ----------

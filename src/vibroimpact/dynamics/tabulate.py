@@ -22,7 +22,7 @@ BLOCK = 2000
 def tabulate(
     problem: StatesProblem, progress: Callable[[float], None] | None = None, *, threads: int = 1
 ) -> Response:
-    """Return the response of drops without their histories.
+    """Simulate a batch of drops and keep their impact tables, without histories.
 
     The numbers are those of `simulate` to the tolerance, for every problem. It keeps no histories,
     which are read within the contacts and need more nodes, and runs a large batch in blocks that

@@ -50,7 +50,7 @@ _VAGUE = 0.5
 
 @dataclass(frozen=True, eq=False)
 class Identification(Reported, reported_in="vibroimpact.identification.report"):
-    """An impact as it is identified from records of sensors.
+    """An impact identified from sensor records: its force, place, size and speed.
 
     Parameters
     ----------
@@ -299,7 +299,7 @@ def identify_on(
 def identify_force(
     case: CaseTable, records: Sequence[Record], place: Place, *, window: float = WINDOW
 ) -> Force:
-    """Return the force behind records at a place that is known, from the records alone.
+    """Reconstruct the force history of an impact at a known place from sensor records alone.
 
     No contact law is assumed.
 

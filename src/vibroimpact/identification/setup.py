@@ -46,7 +46,7 @@ def _largest(name: str) -> float:
 
 @dataclass(frozen=True)
 class SetupErrors:
-    """Standard deviations of what a case states about the plate and its sensors.
+    """Standard uncertainties of the plate and sensor properties that a case states.
 
     What is not given here is taken as certain.
 

@@ -58,7 +58,7 @@ SEEDS = 5
 
 @dataclass(frozen=True, eq=False)
 class Recognition(Reported, reported_in="vibroimpact.recognition.report"):
-    """Scores of classifiers of a data set, estimated by cross-validation.
+    """Cross-validated performance of classifiers on a data set.
 
     Parameters
     ----------

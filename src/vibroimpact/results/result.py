@@ -31,7 +31,9 @@ from vibroimpact.results.peaks import Peaks, peaks_of
 
 @dataclass(frozen=True)
 class Result(Reported, reported_in="vibroimpact.runs.report"):
-    """Result of one drop; its last five fields are empty where nothing but the contact deforms.
+    """Result of one drop: impact table, histories, energy balance and signals.
+
+    Its last five fields are empty where nothing but the contact deforms.
 
     Its charts, which `plot` draws by their names, are "setup", "position", "force", "velocity",
     "acceleration", "force_indentation" and "energy"; where bodies vibrate also "sphere_energy",

@@ -17,7 +17,7 @@ from vibroimpact.signals.record import Record
 def from_onset(
     record: Record, duration: float, before: float = 0.0, threshold: float | None = None
 ) -> Record:
-    """Return a window of a record around its first touch.
+    """Cut a record to a window around its onset, the first touch.
 
     That is where its magnitude first reaches a threshold, once its baseline is removed. Windows of
     equal duration and rate have equal numbers of samples. Before the record and after it, they are

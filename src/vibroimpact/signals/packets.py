@@ -30,7 +30,7 @@ DEAD_TIME = 5e-3
 
 
 class Packets(NamedTuple):
-    """Packets of signals, in the order of the signals and of time, each an array (packets,).
+    """Bursts (packets) of signals, in the order of signals and time, as arrays (packets,).
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class Packets(NamedTuple):
 def find_packets(
     record: Record, threshold: float | None = None, dead_time: float = DEAD_TIME
 ) -> Packets:
-    """Return the packets of a record, of which the baseline is removed.
+    """Find the bursts (packets) in a record whose baseline was removed.
 
     Parameters
     ----------

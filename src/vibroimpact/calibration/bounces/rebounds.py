@@ -26,7 +26,7 @@ of a linear spring, to 1/5, of Hertz's contact.
 
 @dataclass(frozen=True)
 class Rebounds(Reported, reported_in="vibroimpact.calibration.bounces.report"):
-    """The impacts of a bouncing ball in a record, n touches, in vacuum.
+    """Impacts of a bouncing ball from the n touches in a record, in a vacuum.
 
     Parameters
     ----------

@@ -59,7 +59,7 @@ class Record(NamedTuple):
 
 @dataclass(frozen=True)
 class Observations:
-    """Impacts to be matched.
+    """Measured impacts that a calibration matches, with their covariance.
 
     Noise is a linear map from independent sources of unit variance, so that a reading shared by two
     impacts (the height between them) counts once.

@@ -32,7 +32,7 @@ _MOST_DIGITS = 9
 
 @dataclass(frozen=True)
 class Restitutions(Reported, reported_in="vibroimpact.calibration.restitutions.report"):
-    """Restitutions at n approach speeds, which are taken as exact.
+    """Measured coefficients of restitution at n approach speeds, which are taken as exact.
 
     Parameters
     ----------

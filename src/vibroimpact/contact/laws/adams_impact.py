@@ -39,7 +39,7 @@ def _levels(coefficients: Any) -> Levels:
 
 @dataclass(frozen=True, kw_only=True)
 class AdamsImpact(PowerLaw):
-    r"""Adams' IMPACT.
+    r"""The IMPACT function of Adams: a power law, with damping that rises with penetration.
 
     STEP is the cubic :math:`C s^2 (3 - 2 s)` in :math:`s = \delta/d`, and C beyond :math:`d`.
 

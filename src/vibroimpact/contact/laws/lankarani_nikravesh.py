@@ -10,7 +10,7 @@ from vibroimpact.contact.hysteretic import HystereticLaw
 
 @dataclass(frozen=True, kw_only=True)
 class LankaraniNikravesh(HystereticLaw):
-    r"""Hertz's force with damping from a wanted restitution (Lankarani and Nikravesh 1990).
+    r"""Hertz contact with hysteretic damping by a restitution (Lankarani and Nikravesh 1990).
 
     .. math:: F = K \delta^n \left[1 + \tfrac34 (1 - e^2)\, \dot\delta / \dot\delta_0\right]
 

@@ -21,7 +21,7 @@ _DENSEST = 0.02
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Air(Fluid):
-    """Air at rest; each value is a number, or an array with one a drop.
+    """Still air; each value is a number, or an array with one value per drop.
 
     Parameters
     ----------

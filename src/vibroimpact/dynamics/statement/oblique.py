@@ -21,8 +21,9 @@ def _are_numbers(value: Any) -> bool:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Oblique:
-    """Initial motion along the plate and spin, and the friction law; each value is a number, or an
-    array with one a drop.
+    """Tangential velocity, spin, friction law and inclination of an oblique impact.
+
+    Each value is a number, or an array with one value per drop.
 
     The axes x and y lie in the plate's upper surface, z is its normal, upwards.
 

@@ -16,7 +16,7 @@ _UNIT = 1e-9  # largest deviation of the length of a direction from one
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PlateMotion:
-    r"""Prescribed motion of the supports of a plate along a direction.
+    r"""Base excitation: prescribed motion of the supports of a plate along a direction.
 
     :math:`s(t) = \sum_k A_k \sin(2 \pi f_k t + \varphi_k)`
 

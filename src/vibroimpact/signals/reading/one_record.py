@@ -19,7 +19,7 @@ _MOST_LISTED = 10
 def one_record(
     path: str | PathLike[str], channel: str | None = None, columns: str | None = None
 ) -> Record:
-    """Return the record of a channel of a file, or of a folder; of its only one without a name.
+    """Read a channel of a file or folder; where there is only one, its name may be left out.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ LONG = 100
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """A study, read and validated.
+    """A parameter study, validated and not yet computed.
 
     Attributes
     ----------

@@ -166,7 +166,7 @@ def _check_lines(
 def responses_of_case(
     case: CaseTable, frequency: object, progress: Callable[[float], None] | None = None
 ) -> tuple[FrequencyResponse, ...]:
-    """Return the frequency responses of the sensors of a case to a force at its impact's place.
+    """Compute the frequency response functions of the sensors of a case for a force at its impact.
 
     The force acts upwards.
 

@@ -28,7 +28,7 @@ def _friction(slip: Array, normal_force: Array, coefficients: Any) -> Array:
 
 @dataclass(frozen=True, kw_only=True)
 class Coulomb(ImpulsiveFriction):
-    r"""Coulomb's friction, which acts against the slip until it has ended.
+    r"""Coulomb's sliding friction, without tangential compliance.
 
     .. math:: Q = \mu F
 

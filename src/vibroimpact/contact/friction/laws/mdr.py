@@ -9,7 +9,7 @@ from vibroimpact.contact.friction.law import CompliantFriction
 
 @dataclass(frozen=True, kw_only=True)
 class MDR(CompliantFriction):
-    r"""Contact of elastic spheres that sticks in its middle and slips at its rim.
+    r"""Partial slip (Cattaneo and Mindlin), by the method of dimensionality reduction.
 
     Both forces may have any history.
 

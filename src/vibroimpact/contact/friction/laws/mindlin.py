@@ -9,7 +9,7 @@ from vibroimpact.contact.friction.law import CompliantFriction
 
 @dataclass(frozen=True, kw_only=True)
 class Mindlin(CompliantFriction):
-    r"""A single spring of Mindlin's stiffness, whose displacement is kept.
+    r"""A tangential spring of Mindlin's stiffness, whose displacement is kept as the force changes.
 
     .. math:: Q = 2 G^* a\, \xi,\qquad \dot\xi = \dot s,\qquad Q \le \mu F
 

@@ -28,7 +28,7 @@ def _slip_after(slip: Array, impulse: Array, whole: Array, mass: Array, coeffici
 
 @dataclass(frozen=True, kw_only=True)
 class Rigid(ImpulsiveFriction):
-    r"""A coefficient of restitution of the slip, or sliding (Walton 1993).
+    r"""Tangential restitution where it sticks, Coulomb's sliding friction otherwise (Walton 1993).
 
     The slip is reversed by the coefficient where the friction suffices; elsewhere the contact
     slides.

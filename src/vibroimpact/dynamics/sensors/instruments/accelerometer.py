@@ -17,8 +17,7 @@ from vibroimpact.units.display import STANDARD_GRAVITY
 
 @dataclass(frozen=True)
 class Accelerometer(InstrumentInCase):
-    """What an accelerometer adds to the acceleration of its base: its resonance, then its
-    range; its noise and its steps.
+    """An accelerometer with mounted resonance, measuring range, noise and resolution.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ from vibroimpact.dynamics.sensors.instruments.pole_pairs import Section
 
 @dataclass(frozen=True)
 class Geophone(InstrumentInCase):
-    """A geophone: the voltage of a coil on a spring.
+    """A moving-coil geophone, whose voltage follows the velocity above its natural frequency.
 
     It is on the plate, too light to change its motion.
 
