@@ -90,21 +90,7 @@ RELEASE_X, RELEASE_Y = range(COLUMNS + 17, OBLIQUE_COLUMNS)
 """Further ones: where the centre is at the end of the contact [m]."""
 
 AT_START, IN_FLIGHT, AT_TOUCH = -3, -2, -1
-"""Phases of the run of a drop; one that has ended has a number of `ENDINGS`."""
-
-ENDINGS = (
-    "number of impacts",
-    "duration",
-    "at rest: rest speed",
-    "at rest: contact without release",
-    "at rest: stuck",
-    "left for good",
-    "limit of impacts",
-    "failed",
-    "beside the plate",
-    "limit of a ride",
-)
-"""Reasons for the end of a run, by their numbers."""
+"""Phases of the run of a drop; one that has ended has the number of its ending."""
 
 (
     END_BY_IMPACTS,
@@ -115,9 +101,10 @@ ENDINGS = (
     END_LEFT,
     END_AT_LIMIT,
     END_FAILED,
-    END_BESIDE,
     END_RIDING,
-) = range(len(ENDINGS))
+    END_BESIDE,
+) = range(10)
+"""How a run ends: in the order of `Outcome`, whose codes they are."""
 
 
 class StopRules(NamedTuple):

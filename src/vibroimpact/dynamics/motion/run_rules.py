@@ -13,16 +13,13 @@ from vibroimpact.dynamics.core.drop_records import StopRules
 from vibroimpact.dynamics.core.drops import LEAST_REST_SPEED, default_rest_speed
 from vibroimpact.dynamics.motion.flight import Flight
 from vibroimpact.dynamics.motion.law_coefficients import coefficients_of
-from vibroimpact.dynamics.statement.outcome import Outcome
+from vibroimpact.dynamics.statement.outcome import OUTCOMES
 from vibroimpact.dynamics.statement.problem import MOST_IMPACTS, Problem
 
 _APART = 4e-15  # of the amplitude of a shaken plate: the rounding error of its place
 
-OUTCOME_CODES = np.array([Outcome(ending).code for ending in records.ENDINGS])
-"""Codes of outcomes by the numbers of endings."""
-
-IS_AT_REST = np.array([Outcome(ending).at_rest for ending in records.ENDINGS])
-"""Which endings are rest, by their numbers."""
+IS_AT_REST = np.array([outcome.at_rest for outcome in OUTCOMES])
+"""Which endings of `core.drop_records` are rest, by their numbers."""
 
 
 def laws_of(problem: Problem) -> list[ContactLaw]:

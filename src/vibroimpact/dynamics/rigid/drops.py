@@ -26,7 +26,7 @@ from vibroimpact.dynamics.motion.energy import close_ledger, ledger_holds
 from vibroimpact.dynamics.motion.law_coefficients import coefficients_of
 from vibroimpact.dynamics.motion.progress import fraction_done
 from vibroimpact.dynamics.motion.rest import Rest
-from vibroimpact.dynamics.motion.run_rules import IS_AT_REST, OUTCOME_CODES, laws_of, stop_rules_of
+from vibroimpact.dynamics.motion.run_rules import IS_AT_REST, laws_of, stop_rules_of
 from vibroimpact.dynamics.oblique.lying import lie
 from vibroimpact.dynamics.rigid.fluid_drops import FluidDrops
 from vibroimpact.dynamics.rigid.line_contact import NO_CONTACTS, contact_manner
@@ -300,7 +300,7 @@ def _ended_run(ended: _Ended, *, keeps_bounces: bool) -> EndedRun:
     holds = ledger_holds(energy, added)
     if oblique is not None:
         energy |= friction_parts(*oblique.taken.T)
-    codes = np.where(holds, OUTCOME_CODES[drops.phases], Outcome.FAILED.code)
+    codes = np.where(holds, drops.phases, Outcome.FAILED.code)
     size = len(codes)
     rest = Rest(
         speed=state[records.REST_SPEED],

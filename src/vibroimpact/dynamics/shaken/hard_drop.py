@@ -17,7 +17,7 @@ from vibroimpact.dynamics.core.stop_rules import is_too_slow
 from vibroimpact.dynamics.motion.flight import Flight
 from vibroimpact.dynamics.motion.progress import fraction_done
 from vibroimpact.dynamics.motion.ride import Ride
-from vibroimpact.dynamics.motion.run_rules import OUTCOME_CODES, default_rest_speeds, start_of
+from vibroimpact.dynamics.motion.run_rules import default_rest_speeds, start_of
 from vibroimpact.dynamics.oblique.told_flights import ToldFlights
 from vibroimpact.dynamics.shaken.recorded_drop import HardBounces
 from vibroimpact.dynamics.statement.outcome import OUTCOMES, Outcome
@@ -124,7 +124,7 @@ class HardDrop:
         if phase == AT_TOUCH:
             self.rows.append(row)
         else:
-            self._end_by(OUTCOMES[OUTCOME_CODES[phase]], time)
+            self._end_by(OUTCOMES[phase], time)
 
     def _time_to_touch(self, flight: Flight) -> float:
         """Return the time from the start of a flight to its touch [s]."""

@@ -18,7 +18,6 @@ from vibroimpact.dynamics.motion.energy import close_ledger, ledger_holds
 from vibroimpact.dynamics.motion.impact_rows import further_columns, stacked_tables, table_of
 from vibroimpact.dynamics.motion.progress import of_several
 from vibroimpact.dynamics.motion.rest import Rest
-from vibroimpact.dynamics.motion.run_rules import OUTCOME_CODES
 from vibroimpact.dynamics.statement.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.drop_system import slices_of, system_of
@@ -215,7 +214,7 @@ def _ended_run(problem: Problem, ended: Sequence[_Ended]) -> EndedRun:
     added = np.array([one.added for one in ended])
     entries = {name: np.array([one.energy[name] for one in ended]) for name in ended[0].energy}
     energy = close_ledger(np.array([one.energy_in for one in ended]), added, entries)
-    codes = OUTCOME_CODES[[drop.now.phase for drop in drops]]
+    codes = np.array([drop.now.phase for drop in drops])
     codes[~ledger_holds(energy, added)] = Outcome.FAILED.code
     if problem.oblique is not None:
         energy |= friction_parts(*np.array([drop.taken_by_friction() for drop in drops]).T)
