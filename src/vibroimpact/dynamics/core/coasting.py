@@ -16,12 +16,15 @@ from vibroimpact.dynamics.core.flight import (
     state_after,
 )
 from vibroimpact.dynamics.core.law import law_indentation
+from vibroimpact.dynamics.core.line_events import narrowed, secant_of
+from vibroimpact.dynamics.core.line_records import Bracket
 from vibroimpact.dynamics.core.records import Law, State, System
 
 _SAMPLES = 64
 _MOST_HORIZONS = 2_000  # each twice as long as the one before
 _MOST_SECANTS = 200
 _TIME_ROUNDING = 1e-13  # of the time of a recoil
+_LEAST = 1e-300
 
 
 @compiled
@@ -51,37 +54,23 @@ def change_between(
 ) -> float:
     """Return when between two times [s] a recoiling contact separates, or else pushes again, to the
     rounding of the time.
-
-    By the secant, with the value of an end that has stayed for two steps halved (the Illinois
-    method).
     """
     kind = 0 if separates else 1
     low_value = coasting_values(system, law, state_after(system, state, low))[kind]
     high_value = coasting_values(system, law, state_after(system, state, high))[kind]
-    side = 0
+    # the change has come at the end, whatever rounding makes of its value there
+    bracket = Bracket(low, high, low_value, max(high_value, _LEAST), 0)
     for _ in range(_MOST_SECANTS):
-        if not high - low > _TIME_ROUNDING * high:
+        rounding = _TIME_ROUNDING * bracket.high
+        if not bracket.high - bracket.low > rounding:
             break
-        middle = (
-            high - (high - low) * high_value / (high_value - low_value)
-            if low_value < 0.0
-            else 0.5 * (low + high)
-        )
-        middle = min(
-            max(middle, low + 0.25 * _TIME_ROUNDING * high), high - 0.25 * _TIME_ROUNDING * high
-        )
+        middle = 0.5 * (bracket.low + bracket.high)
+        if bracket.low_value < 0.0:
+            middle = secant_of(bracket)
+        middle = min(max(middle, bracket.low + 0.25 * rounding), bracket.high - 0.25 * rounding)
         value = coasting_values(system, law, state_after(system, state, middle))[kind]
-        if value > 0.0:
-            high = middle
-            high_value = value
-            low_value *= 0.5 if side > 0 else 1.0
-            side = 1
-        else:
-            low = middle
-            low_value = value
-            high_value *= 0.5 if side < 0 else 1.0
-            side = -1
-    return high
+        bracket = narrowed(bracket, middle, value)
+    return bracket.high
 
 
 @compiled
