@@ -7,7 +7,9 @@ from functools import cache
 from typing import Any
 
 from vibroimpact.app.messages import LONGEST
+from vibroimpact.cases.fields.elastic_body import ELASTIC_KEYS
 from vibroimpact.cases.reader import shipped_cases
+from vibroimpact.contact.friction.law import FrictionLaw, ImpulsiveFriction
 from vibroimpact.contact.friction.registry import friction_laws
 from vibroimpact.contact.law import unit_of
 from vibroimpact.contact.registry import contact_laws
@@ -32,7 +34,12 @@ def offer() -> dict[str, Any]:
     return {
         "cases": {name: titles[name] for name in titles if name not in _OF_OTHER_COMMANDS},
         "laws": {name: _law(law) for name, law in contact_laws().items()},
+        "elastic_keys": list(ELASTIC_KEYS),
         "friction": list(friction_laws()),
+        "impulsive_friction": [
+            name for name, law in friction_laws().items() if issubclass(law, ImpulsiveFriction)
+        ],
+        "friction_coefficient": _FRICTION_COEFFICIENT,
         "materials": list(material_library()),
         "palette": palette(),
         "longest": LONGEST,
@@ -40,6 +47,11 @@ def offer() -> dict[str, Any]:
 
 
 _OF_OTHER_COMMANDS = ("paper:sweep", "paper:calibration", "paper:full-damping-penetration")
+
+_FRICTION_COEFFICIENT = next(
+    field.metadata["example"] for field in fields(FrictionLaw) if field.name == "coefficient"
+)
+"""The coefficient with which friction begins."""
 
 _HERTZ_EXPONENT = 1.5
 """Exponent of the indentation, on which units of stiffness depend."""

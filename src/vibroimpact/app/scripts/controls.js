@@ -198,13 +198,12 @@
   };
 
   // What only an elastic body has goes with its model, as what only a rigid one has, and a plate that is to vibrate needs a size.
-  const ELASTIC = ["modes", "max_frequency", "damping", "mesh", "reduction", "attachment_mode", "element", "supports"];
   const RIGID = { sphere: ["mass", "inertia"], plate: [] };
   const setModel = (table, body, value, controls) => {
     const section = table[body];
     section.model = value;
     controls.kept[body] = controls.kept[body] || {};
-    for (const key of ELASTIC) {
+    for (const key of controls.offer.elastic_keys) {
       if (value === "rigid" && key in section && !(key === "supports" && section.radius !== undefined)) { controls.kept[body][key] = section[key]; delete section[key]; }
       if (value === "elastic" && key in controls.kept[body] && !(key in section)) section[key] = controls.kept[body][key];
     }
@@ -225,7 +224,7 @@
       if (section.modes === undefined && section.max_frequency === undefined) section.modes = body === "plate" ? 60 : 20;
     }
     const deforms = vibrates(table), rubs = table.contact.friction;
-    if (deforms && rubs && IMPULSIVE.includes(rubs.law)) table.contact.friction = { law: "mdr", coefficient: rubs.coefficient };
+    if (deforms && rubs && isImpulsive(controls, rubs.law)) table.contact.friction = { law: "mdr", coefficient: rubs.coefficient };
     const local = ["local_compliance", "finite_sphere", "local_stiffness", "local_damping", "measured"];
     controls.kept.contact = controls.kept.contact || {};
     for (const key of local) {
@@ -342,19 +341,18 @@
   // Whether the sphere may fall obliquely: on a flat plate whose sides are known.
   const isFlat = ({ plate }) => plate.radius === undefined && plate.mesh?.file === undefined;
 
-  const vibrates = ({ sphere, plate }) => [sphere, plate].some((body) => body.model === "elastic");
-
   // Friction laws without tangential compliance, which friction on bodies that deform needs.
-  const IMPULSIVE = ["coulomb", "rigid"];
+  const isImpulsive = (controls, law) => controls.offer.impulsive_friction.includes(law);
+  const vibrates = ({ sphere, plate }) => [sphere, plate].some((body) => body.model === "elastic");
 
   const friction = (controls) => {
     const path = ["contact", "friction"], now = at(controls.resolved, path);
     if (!isFlat(controls.resolved)) return [];
-    const laws = controls.offer.friction.filter((name) => !(vibrates(controls.resolved) || controls.resolved.plate.motion) || !IMPULSIVE.includes(name));
+    const laws = controls.offer.friction.filter((name) => !(vibrates(controls.resolved) || controls.resolved.plate.motion) || !isImpulsive(controls, name));
     const rows = [choice(controls, {
       path: [...path, "law"], label: "Friction", options: ["none", ...laws].map((name) => [name, name]),
       chosen: (table) => at(table, [...path, "law"]) ?? "none",
-      choose: (table, value) => { if (value === "none") delete table.contact.friction; else table.contact.friction = { law: value, coefficient: now?.coefficient ?? 0.3 }; },
+      choose: (table, value) => { if (value === "none") delete table.contact.friction; else table.contact.friction = { law: value, coefficient: now?.coefficient ?? controls.offer.friction_coefficient }; },
     })];
     if (now) rows.push(slider(controls, { path: [...path, "coefficient"], label: "Coefficient", low: 0, high: 1 }));
     return rows;
@@ -371,7 +369,7 @@
         if (value === "rest") { delete table.plate.motion; return; }
         table.plate.motion = { amplitude: "1 mm", frequency: "25 Hz" };
         const rubs = table.contact.friction;
-        if (rubs && IMPULSIVE.includes(rubs.law)) table.contact.friction = { law: "mdr", coefficient: rubs.coefficient };
+        if (rubs && isImpulsive(controls, rubs.law)) table.contact.friction = { law: "mdr", coefficient: rubs.coefficient };
       },
     })];
     if (!controls.resolved.plate.motion) return rows;
