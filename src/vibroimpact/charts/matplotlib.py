@@ -383,7 +383,8 @@ class _Print:
             axes.tick_params(labelbottom=lowest)
             axes.set_xlabel(lettering(across.title) if lowest else "")
             labelled = labelled and panel not in self.unlabelled
-            axes.set_ylabel((lettering(up.title) if up.label else up.unit) if labelled else "")
+            if labelled:
+                axes.set_ylabel(lettering(up.title) if up.label else up.unit)
         if view is None and panel.marks:
             self.drawn.setdefault((panel.x, "x"), []).append(axes)
             self.drawn.setdefault((panel.y, "y"), []).append(axes)

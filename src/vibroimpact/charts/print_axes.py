@@ -46,10 +46,12 @@ def set_axis(axes: Axes, side: str, axis: Axis, frame: Frame) -> None:
 
 def _numbers(axes: Axes, side: str) -> int:
     """Return how many numbers fit along an axis."""
+    if side == "y":
+        return 5
     place = axes.get_subplotspec()
     assert place is not None
     columns = place.get_gridspec().ncols // len(place.colspan)
-    return (7 if columns == 1 else 6 if columns == 2 else 3) if side == "x" else 5
+    return {1: 7, 2: 6}.get(columns, 3)
 
 
 def plain_log(line: Any) -> None:

@@ -188,9 +188,9 @@ def scale_of(axis: Axis, frame: Frame) -> dict[str, Any]:
             None if not np.isfinite(end) else float(frame.shown(np.array(end)))
             for end in axis.range
         ]
-        scale["range"] = (
-            [None if end is None else float(np.log10(end)) for end in ends] if axis.log else ends
-        )
+        if axis.log:
+            ends = [None if end is None else float(np.log10(end)) for end in ends]
+        scale["range"] = ends
     if axis.ticks:
         scale |= {"tickvals": frame.shown(np.array(axis.ticks)).tolist()}
     return scale | ({"tickformat": "d"} if axis.integer else {})

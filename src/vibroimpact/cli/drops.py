@@ -135,11 +135,8 @@ def _run(
     from vibroimpact.studies.planning.sweep_file import load_drop
 
     case = load_case(name, changes) if drop is None else load_drop(name, drop, changes)
-    target = (
-        Path(stem(name) if drop is None else f"{stem(name)}-drop-{drop}")
-        if output is None
-        else output
-    )
+    default_folder = stem(name) if drop is None else f"{stem(name)}-drop-{drop}"
+    target = Path(default_folder) if output is None else output
     check_free(target, force=force)  # fail before the computation
     if case.sweep is not None:
         phrase = (

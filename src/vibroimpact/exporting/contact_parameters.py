@@ -256,12 +256,12 @@ def _remedy(drop: Drop, changes: list[str]) -> str:
 
 def _restitutions(impacts: Mapping[str, Floats]) -> str:
     values = impacts["restitution_achieved"].tolist()
-    return (
-        ", ".join(f"{value:.3f}" for value in values[:_SHOWN])
-        + (", ..." if len(values) > _SHOWN else "")
-        if values
-        else "none"
-    )
+    if not values:
+        return "none"
+    shown = [f"{value:.3f}" for value in values[:_SHOWN]]
+    if len(values) > _SHOWN:
+        shown.append("...")
+    return ", ".join(shown)
 
 
 def clipped_dashpot(

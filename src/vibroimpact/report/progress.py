@@ -90,10 +90,8 @@ class _Rate(ProgressColumn):
     """Column with the items per second."""
 
     def render(self, task: Task) -> Text:
-        return Text(
-            ""
-            if task.speed is None
-            else f"{task.speed:,.3g}/s"
-            if task.speed < 100
-            else f"{task.speed:,.0f}/s"
-        )
+        if task.speed is None:
+            return Text("")
+        if task.speed < 100:
+            return Text(f"{task.speed:,.3g}/s")
+        return Text(f"{task.speed:,.0f}/s")

@@ -110,13 +110,11 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
                 )
             )
             continue
-        shown = (
-            ", ".join(f"{value:.9g}" for value in values)
-            if len(set(values)) > 1
-            else f"{values[0]:.9g}"
-            if values[0] is not None
-            else "-"
-        )
+        shown = "-"
+        if len(set(values)) > 1:
+            shown = ", ".join(f"{value:.9g}" for value in values)
+        elif values[0] is not None:
+            shown = f"{values[0]:.9g}"
         rows.append((f"  {item.name}", f"{shown} {unit_of(item, getattr(laws[0], 'exponent', 1))}"))
     if (table := case.contact.local.liquid) is not None:
         stokes = table.liquid().stokes_number(
@@ -173,16 +171,13 @@ def _ends_of_a_run(case: Case) -> list[str]:
     number = impact_limit(case)
     duration = run_duration(case)
     ends = ["at rest"] if case.drop.gravity else ["when it flies off for good"]
-    ends += [f"after {number} impact{'' if number == 1 else 's'}"] if number else []
-    ends += [f"at {duration:g} s"] if duration else []
-    return [
-        *ends,
-        *(
-            ["when it falls off the edge of the plate"]
-            if is_oblique(case) and case.plate.size
-            else []
-        ),
-    ]
+    if number:
+        ends.append("after 1 impact" if number == 1 else f"after {number} impacts")
+    if duration:
+        ends.append(f"at {duration:g} s")
+    if is_oblique(case) and case.plate.size:
+        ends.append("when it falls off the edge of the plate")
+    return ends
 
 
 def _ball_rows(case: Case) -> list[tuple[str, str]]:

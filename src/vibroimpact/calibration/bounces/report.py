@@ -121,16 +121,11 @@ def other_sentences(rebounds: Rebounds) -> list[str]:
         for time, reason in pairs[:_MOST_SOUNDS]
     ]
     more = len(pairs) - _MOST_SOUNDS
-    rest = (
-        "1 other sound is no bounce either; summary.json lists it."
-        if more == 1
-        else f"{more} other sounds are no bounces either"
-    )
-    return (
-        sentences
-        if more <= 0
-        else [*sentences, rest if more == 1 else f"{rest}; summary.json lists them."]
-    )
+    if more == 1:
+        sentences.append("1 other sound is no bounce either; summary.json lists it.")
+    elif more > 1:
+        sentences.append(f"{more} other sounds are no bounces either; summary.json lists them.")
+    return sentences
 
 
 def _sentence(law: SpeedLaw, confidence: float) -> str:

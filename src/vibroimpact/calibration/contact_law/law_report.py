@@ -118,11 +118,13 @@ def function_words(calibration: Calibration) -> str:
         else np.zeros(function.degree + 1)
     )
     for power, (value, spread) in enumerate(zip(function.coefficients, half, strict=True)):
-        minus = "\u2212" if value < 0.0 else "+" if phrase else ""
-        phrase += f" {minus} " if phrase else minus
-        phrase += known_text(abs(value), float(spread)) + (
+        term = known_text(abs(value), float(spread)) + (
             _POWERS[power] if power < len(_POWERS) else f" v^{power}"
         )
+        if value < 0.0:
+            phrase += f" \u2212 {term}" if phrase else f"\u2212{term}"
+        else:
+            phrase += f" + {term}" if phrase else term
     unit = f" [{calibration.unit}]" if calibration.unit else ""
     if not function.degree:
         return f"{calibration.parameter} = {phrase}{unit}"
@@ -209,13 +211,11 @@ def given_sentences(calibration: Calibration) -> list[str]:
         within = calibration.intervals is not None and bool(
             np.prod(calibration.intervals[worst] - calibration.given[worst]) <= 0.0
         )
-        verdict = (
-            ", within the uncertainty of the measurement"
-            if within
-            else ": it does not meet the target"
-            if misses
-            else ""
-        )
+        verdict = ""
+        if within:
+            verdict = ", within the uncertainty of the measurement"
+        elif misses:
+            verdict = ": it does not meet the target"
         met = abs(calibration.outcomes[name][worst] / wanted[worst] - 1.0) <= _MET
         best = f"{meets} {'meets' if met else 'comes nearest to'} the target"
         sentences.append(

@@ -82,11 +82,10 @@ def friction_sentences(calibration: FrictionCalibration) -> list[str]:
         )
     slip = int(calibration.slips.sum())
     number = len(calibration.slips)
-    alone = (
-        f"; of friction, {'these depend' if slip > 1 else 'it depends'} on the coefficient alone"
-        if slip
-        else ""
-    )
+    alone = ""
+    if slip:
+        depends = "these depend" if slip > 1 else "it depends"
+        alone = f"; of friction, {depends} on the coefficient alone"
     which = f"Of {number} impacts {slip or 'none'} slip{'s' if slip == 1 else ''}"
     if number == 1:
         which = "The impact slips" if slip else "The impact does not slip"

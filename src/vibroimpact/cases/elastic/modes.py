@@ -343,13 +343,11 @@ def _doubts_of_mass(
         else 'write "520 mm", as a bare number is in metres'
     )
     hint = f"; if it is in millimetres, {remedy}" if extent.max() > _LARGE else ""
-    volume = (
-        ball_volume(case.sphere.radius)
-        if name == "sphere"
-        else math.prod(case.plate.size)
-        if case.plate.size
-        else None
-    )
+    volume = None
+    if name == "sphere":
+        volume = ball_volume(case.sphere.radius)
+    elif case.plate.size:
+        volume = math.prod(case.plate.size)
     if name == "plate" and model.mesh.materials:
         # whose mass is that of no one material; a sphere falls with the mass that the case
         # describes

@@ -107,4 +107,7 @@ def _levels(shown: ComparedQuantity, marks: Mapping[str, float], values: Floats)
 
 def _label(kinds: Sequence[str]) -> str:
     names = sorted(kind for kind in kinds if kind)
-    return f"Type{'s' if len(names) > 1 else ''} {' and '.join(names)}" if names else ""
+    if not names:
+        return ""
+    noun = "Types" if len(names) > 1 else "Type"
+    return f"{noun} {' and '.join(names)}"
