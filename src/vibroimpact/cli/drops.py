@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -19,6 +20,7 @@ from vibroimpact.cli.shared import (
     exit_on_interrupt,
     names_in,
     note,
+    save_and_show,
     say,
     settings_of,
     show,
@@ -27,6 +29,10 @@ from vibroimpact.cli.shared import (
     write_and_show,
 )
 from vibroimpact.errors import InputError
+
+if TYPE_CHECKING:
+    from vibroimpact.cases.elastic.modes import BodyModes
+    from vibroimpact.modes.tables import MeasuredTable
 
 
 @app.command()
@@ -200,7 +206,6 @@ def modes(
     from vibroimpact.cases.costs import describe_costs
     from vibroimpact.cases.elastic.modes import compute_modes
     from vibroimpact.cases.reader import load_case, prefix_errors
-    from vibroimpact.cli.measured_modes import measured_modes, modes_beside_table
     from vibroimpact.files.result_folder import check_free
     from vibroimpact.measurements.universal_file import is_universal
     from vibroimpact.modes.report import report_of
@@ -276,3 +281,22 @@ def figures(
     with exit_on_interrupt(), patient_progress("drawing figures", console()) as progress:
         written = save_figures(directory, names_in(formats), output, progress)
     say(f"wrote {written}")
+
+
+def measured_modes(
+    paths: Sequence[Path], target: Path, *, figures: bool, force: bool, as_json: bool
+) -> None:
+    """Print and write the modes in the frequency responses of universal files."""
+    from vibroimpact.test_analysis.measured.modes_of_file import modes_of_files
+
+    with exit_on_interrupt():
+        measured = modes_of_files(paths)
+    save_and_show(measured, target, force=force, figures=figures, as_json=as_json)
+
+
+def modes_beside_table(bodies: Mapping[str, BodyModes], paths: Sequence[Path]) -> MeasuredTable:
+    """Return measured modes beside those of the plate of a case."""
+    from vibroimpact.test_analysis.measured.modes_of_file import modes_beside
+    from vibroimpact.test_analysis.measured.report import compared_table
+
+    return compared_table(modes_beside(bodies["plate"].basis if "plate" in bodies else None, paths))

@@ -14,7 +14,7 @@ from vibroimpact.charts.chart import Panel
 from vibroimpact.charts.marks import Label, Line, Map, Mark, Outline, Points
 from vibroimpact.charts.outlines import AT_REST, on_supports
 from vibroimpact.modes.supports import support_outlines
-from vibroimpact.modes.titles import mode_title
+from vibroimpact.modes.tables import mode_title
 from vibroimpact.quoting import visible
 from vibroimpact.results.surface_grid import SurfaceGrid, surface_grid
 from vibroimpact.structures.finite_elements.outline import outline

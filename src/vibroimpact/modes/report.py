@@ -20,10 +20,9 @@ from vibroimpact.modes.document import (
     point_rows,
     summary_of_modes,
 )
-from vibroimpact.modes.measured_table import MeasuredTable
 from vibroimpact.modes.mesh_files import mesh_files
 from vibroimpact.modes.scene import mode_scene
-from vibroimpact.modes.tables import body_facts, mode_table
+from vibroimpact.modes.tables import MeasuredTable, body_facts, mode_table
 from vibroimpact.report.case_text import case_text
 from vibroimpact.report.report import (
     Block,

@@ -9,7 +9,7 @@ import numpy as np
 from vibroimpact.cases.elastic.modes import BodyModes
 from vibroimpact.modes.plate_shapes import is_in_plane, sensor_places
 from vibroimpact.modes.supports import support_outlines
-from vibroimpact.modes.titles import mode_title
+from vibroimpact.modes.tables import mode_title
 from vibroimpact.results.surface_grid import surface_grid
 
 _HEIGHT = 0.12

@@ -11,7 +11,7 @@ from vibroimpact.arrays import Bools, Floats, Indices
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Panel
 from vibroimpact.charts.marks import Facets, Label, Line, Mark
-from vibroimpact.modes.titles import mode_title
+from vibroimpact.modes.tables import mode_title
 from vibroimpact.report.projection import TILT, TURN, project
 from vibroimpact.structures.finite_elements.surface import outer_faces
 from vibroimpact.structures.modal_model import ModalModel

@@ -1,6 +1,11 @@
-"""What is said of the modes of a body: its facts, and the table of its lowest modes."""
+"""What is said of the modes of a body: its facts, the table of its lowest modes, and measured ones
+beside them.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -8,7 +13,8 @@ from vibroimpact.arrays import Floats
 from vibroimpact.bodies.elastic import ElasticBody
 from vibroimpact.cases.elastic.modes import BodyModes
 from vibroimpact.report.report import Column, Gap, Table
-from vibroimpact.units.display import MISSING, column_texts, fixed
+from vibroimpact.structures.modal_model import ModalModel
+from vibroimpact.units.display import MISSING, column_texts, fixed, text
 
 ROWS = 20
 """Lowest modes in a table."""
@@ -82,3 +88,21 @@ def _fixed_texts(values: Floats, reference: float) -> list[str]:
     a reference value.
     """
     return [fixed(float(value), 4) if abs(value) > 1e-6 * reference else "0" for value in values]
+
+
+def mode_title(model: ModalModel, mode: int) -> str:
+    """Return the number of a mode, counted from 1, and its frequency."""
+    return f"{mode + 1}: {text(float(model.frequencies[mode]), 'Hz', 5)}"
+
+
+class MeasuredTable(NamedTuple):
+    """Measured modes beside those of a case.
+
+    `table` is what is shown; `columns` and `rows` are the table of `measured.csv`; and `doubts` is
+    what is not sure.
+    """
+
+    table: Table
+    columns: Sequence[str]
+    rows: Sequence[Mapping[str, Any]]
+    doubts: Sequence[str]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from vibroimpact.report.report import (
     Block,
@@ -22,7 +23,6 @@ from vibroimpact.studies.planning.design import find_design
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.card import CARD, data_card
 from vibroimpact.studies.report.charts import study_charts
-from vibroimpact.studies.report.document import study_document
 from vibroimpact.studies.report.outputs import Output, drawn_outputs, study_outputs
 from vibroimpact.studies.report.restitution import restitution_sentence, summarize_restitution
 from vibroimpact.studies.report.sensitivity_table import Sensitivity, informative_sensitivity
@@ -37,6 +37,7 @@ from vibroimpact.studies.report.tables import (
     percentiles_rows,
     percentiles_table,
     reason_sentences,
+    reasons,
     sensitivity_rows,
     sensitivity_table,
     sensitivity_words,
@@ -194,3 +195,21 @@ def _write_sensitivity(sensitivity: Sensitivity, path: Path) -> None:
 
 def _write_card(study: Study, path: Path) -> None:
     path.write_text(data_card(study), encoding="utf-8")
+
+
+def study_document(
+    study: Study, outputs: list[Output], sensitivity: Sensitivity | None
+) -> dict[str, Any]:
+    """Return the outcome of a study: the rows of `percentiles.csv` and `sensitivity.csv`,
+    failures, exceeded limits and doubts.
+    """
+    return {
+        "name": study.name,
+        "version": study.version,
+        "study": {"design": study.design, "drops": study.size, "failed": len(study.failures)},
+        "reasons": [{"drops": number, "reason": reason} for number, reason in reasons(study)],
+        "percentiles": percentiles_rows(outputs),
+        "sensitivity": [] if sensitivity is None else sensitivity_rows(sensitivity),
+        "limits": [limit._asdict() for limit in study.doubts],
+        "doubts": doubt_sentences(study),
+    }

@@ -13,7 +13,7 @@ from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Mark, Rug
-from vibroimpact.modes.measured_table import MeasuredTable
+from vibroimpact.modes.tables import MeasuredTable
 from vibroimpact.quoting import shortened, visible
 from vibroimpact.report.report import Explanation, Report, Section, Table, table_of
 from vibroimpact.results.csv_files import write_csv
