@@ -6,6 +6,7 @@ import hashlib
 import io
 import pickle
 import sys
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -56,7 +57,7 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
 
     def folder(self, target_context: Any) -> Path:
         """Return the folder of the code."""
-        return machine_folder(str(target_context.codegen().magic_tuple()))
+        return machine_folder(_processor_of(target_context))
 
     def has_code(self, target_context: Any) -> bool:
         """Is the code on the disk? It may be damaged."""
@@ -100,6 +101,12 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
         """Do nothing."""
 
 
+@cache
+def _processor_of(target_context: Any) -> str:
+    """Return what tells processors apart."""
+    return str(target_context.codegen().magic_tuple())
+
+
 def _machine_code_size(compiled: tuple[Any, ...]) -> int:
     """Return the size of the machine code in what numba keeps of a compiled function [bytes]."""
     library = compiled[0]
@@ -107,6 +114,7 @@ def _machine_code_size(compiled: tuple[Any, ...]) -> int:
     return len(machine_code)
 
 
+@cache
 def _register_runtime(target_context: Any) -> None:
     """Make numba's memory manager known to the linker, which is all that loading needs.
 

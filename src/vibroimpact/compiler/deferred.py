@@ -51,24 +51,29 @@ class DeferredFunction:
         if self._why_not():
             return self.py_func
         from vibroimpact.compiler.functions import compiled_function
-        from vibroimpact.compiler.types import signature_of
 
-        return compiled_function(self.py_func, signature_of(self.py_func))
+        return compiled_function(self.py_func, self._signature)
 
     @cached_property
     def signature_text(self) -> str:
         """The signature, with all that it says of named tuples."""
-        from vibroimpact.compiler import types
+        from vibroimpact.compiler.types import text_of
 
-        return types.text_of(types.signature_of(self.py_func))
+        return text_of(self._signature)
+
+    @cached_property
+    def _signature(self) -> Any:
+        """Numba's signature."""
+        from vibroimpact.compiler.types import signature_of
+
+        return signature_of(self.py_func)
 
     @cached_property
     def inner(self) -> Any:
         """The function as compiled code calls it."""
         from vibroimpact.compiler.functions import CompiledFunction
-        from vibroimpact.compiler.types import signature_of
 
-        return CompiledFunction(self.py_func, signature_of(self.py_func), inner=True)
+        return CompiledFunction(self.py_func, self._signature, inner=True)
 
     @property
     # what numba asks for where a function that it compiles calls this one

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -29,14 +30,16 @@ class VibratingSegment:
 
     It is a flight, a stretch of contact, a gap between two contacts, or rest.
 
-    `start`, `end` [s]. `lost_before`: energy lost before [J], (n + 2,): in each coordinate, in the
-    contact, in plastic deformation.
+    `start`, `end` [s]. `lost_before_all`: returns the energy lost before each segment [J],
+    (segments, n + 2): in each coordinate, in the contact, in plastic deformation; `number`: of this
+    one.
     """
 
     start: float
     end: float
     motion: VibratingStretch | FreePhase | FreeMotion | RestMotion
-    lost_before: Floats
+    lost_before_all: Callable[[], Floats]
+    number: int
 
     @property
     def trajectory(self) -> VibratingStretch | FreeMotion | RestMotion:
@@ -78,14 +81,17 @@ class VibratingSegment:
         )
 
     @property
-    def lost_after(self) -> Floats:
-        """Energy lost by the end [J], as in `lost_before`."""
+    def lost_before(self) -> Floats:
+        """Energy lost before it [J] (n + 2,)."""
+        return np.asarray(self.lost_before_all()[self.number])
+
+    @property
+    def lost(self) -> Floats:
+        """Energy lost in it [J], as in `lost_before`."""
         if isinstance(self.motion, VibratingStretch):
-            lost = np.append(self.motion.lost, self._plastic_work(self.motion))
-        else:
-            duration = np.array([self.end - self.start])
-            lost = np.append(self.motion.lost_by(duration)[0], 0.0)
-        return np.asarray(self.lost_before + lost)
+            return np.append(self.motion.lost, self._plastic_work(self.motion))
+        duration = np.array([self.end - self.start])
+        return np.append(self.motion.lost_by(duration)[0], 0.0)
 
     def _plastic_work(self, stretch: VibratingStretch) -> float:
         """Return the plastic work in a stretch of contact [J]."""
@@ -117,19 +123,28 @@ def vibrating_timeline(
         End of the run [s].
     """
     segments: list[VibratingSegment] = []
-    lost_before = np.zeros(bounces[0].motion.system.number + 2)
+
+    @cache
+    def lost_before_all() -> Floats:
+        # that of a history of motion alone is not asked for, and takes as long as the rest
+        lost = np.zeros((len(segments), bounces[0].motion.system.number + 2))
+        for segment in segments[:-1]:
+            lost[segment.number + 1] = lost[segment.number] + segment.lost
+        return lost
+
+    def append(
+        begin: float, end: float, motion: VibratingStretch | FreePhase | FreeMotion | RestMotion
+    ) -> None:
+        segments.append(VibratingSegment(begin, end, motion, lost_before_all, len(segments)))
+
     for bounce in bounces:
         touch = float(bounce.flight_end[0])
         start = float(bounce.flight.start[0])
-        segments.append(VibratingSegment(start, touch, bounce.motion, lost_before))
-        lost_before = segments[-1].lost_after
+        append(start, touch, bounce.motion)
         for piece in bounce.contact.pieces if bounce.contact is not None else ():
             begin = touch + piece.start
             assert isinstance(piece.motion, (VibratingStretch, FreePhase))
-            segments.append(
-                VibratingSegment(begin, begin + piece.motion.length, piece.motion, lost_before)
-            )
-            lost_before = segments[-1].lost_after
+            append(begin, begin + piece.motion.length, piece.motion)
     if lying is not None:
-        segments.append(VibratingSegment(segments[-1].end, end, lying, lost_before))
+        append(segments[-1].end, end, lying)
     return segments
