@@ -79,11 +79,10 @@ def _parameter_chart(calibration: Calibration) -> Chart:
             marks.append(
                 Band(smooth, low, high, f"{100.0 * calibration.confidence:g} % {of_what}", "band")
             )
-        name = (
-            ("constant", "line")[function.degree]
-            if function.degree < 2
-            else f"polynomial of degree {function.degree}"
-        )
+        if function.degree < 2:
+            name = ("constant", "line")[function.degree]
+        else:
+            name = f"polynomial of degree {function.degree}"
         marks.append(Line(smooth, fitted, name, "fit"))
         of_impacts = np.allclose([function.slowest, function.fastest], [speeds.min(), speeds.max()])
         fitted_to = "them" if of_impacts else "the exact values at calibrate.speeds"
@@ -115,11 +114,10 @@ def _parameter_chart(calibration: Calibration) -> Chart:
     panel = Panel(
         Axis("Approach speed", "m/s"), Axis(_begun(phrase), calibration.unit), tuple(marks)
     )
-    key = (
-        calibration.parameter
-        if "." in calibration.parameter
-        else f"contact.{calibration.parameter}"
-    )
+    if "." in calibration.parameter:
+        key = calibration.parameter
+    else:
+        key = f"contact.{calibration.parameter}"
     caption = f"In a case it is {key}. Each impact by itself{fitted_too}."
     if calibration.intervals is not None:
         caption += f" Bars: the interval of each impact at {100.0 * calibration.confidence:g} %."

@@ -38,11 +38,9 @@ def record_chart(overlays: Sequence[Overlay]) -> Chart:
     overlays : sequence of Overlay
         Contacts of a force, or one record of a position.
     """
-    return (
-        _position_chart(overlays[0])
-        if overlays[0].quantity == "position"
-        else _force_chart(overlays)
-    )
+    if overlays[0].quantity == "position":
+        return _position_chart(overlays[0])
+    return _force_chart(overlays)
 
 
 def _force_chart(overlays: Sequence[Overlay]) -> Chart:

@@ -226,11 +226,10 @@ def _levels(drawn: dict[str, Any]) -> list[dict[str, Any]]:
         frame = drawn["frames"][level["axis"]]
         place = float(_shown(np.array(level["value"]), frame))
         along = level["axis"][0]
-        ends = (
-            {"xref": level["axis"], "x0": place, "x1": place}
-            if along == "x"
-            else {"yref": level["axis"], "y0": place, "y1": place}
-        )
+        if along == "x":
+            ends = {"xref": level["axis"], "x0": place, "x1": place}
+        else:
+            ends = {"yref": level["axis"], "y0": place, "y1": place}
         across = f"{level['across']} domain"
         ends |= (
             {"yref": across, "y0": 0, "y1": 1}
@@ -310,8 +309,6 @@ def _coloured(part: Any) -> Any:
         return coloured
     if isinstance(part, list):
         return [_coloured(item) for item in part]
-    return (
-        _COLOURS[part[1:]]
-        if isinstance(part, str) and part.startswith("@") and part[1:] in _COLOURS
-        else part
-    )
+    if isinstance(part, str) and part.startswith("@") and part[1:] in _COLOURS:
+        return _COLOURS[part[1:]]
+    return part

@@ -128,8 +128,8 @@ def area(role: str) -> dict[str, Any]:
 
 def _hatch(role: str, name: str) -> dict[str, Any]:
     look = LOOKS[role]
-    return (
-        {
+    if look.hatch:
+        return {
             name: {
                 "shape": look.hatch,
                 "size": 7,
@@ -138,9 +138,7 @@ def _hatch(role: str, name: str) -> dict[str, Any]:
                 "bgcolor": f"@{role}",
             }
         }
-        if look.hatch
-        else {}
-    )
+    return {}
 
 
 def colour_between(stops: tuple[tuple[float, str], ...], part: float) -> str:

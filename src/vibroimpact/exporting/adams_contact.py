@@ -219,11 +219,10 @@ def adams_contact(drop: Drop) -> AdamsContact:
 def _stiffness_terms(law: ContactLaw) -> tuple[float, float, float | None]:
     """Return stiffness [N/m^n], exponent and penetration of full damping [m]."""
     assert isinstance(law, (AdamsImpact, Hertz, HystereticLaw))
-    penetration = (
-        None
-        if isinstance(law, HystereticLaw)
-        else float(getattr(law, "full_damping_penetration", _ANY_PENETRATION))
-    )
+    if isinstance(law, HystereticLaw):
+        penetration = None
+    else:
+        penetration = float(getattr(law, "full_damping_penetration", _ANY_PENETRATION))
     return float(law.stiffness), float(law.exponent), penetration
 
 

@@ -182,11 +182,10 @@ def shared_notes(drop: Drop) -> list[str]:
             )
             slowest = f"{speeds.min():.4g}"
             fastest = f"{speeds.max():.4g}"
-            impacts_of_drop = (
-                f"impacts at {slowest} to {fastest}"
-                if slowest != fastest
-                else f"an impact at {fastest}"
-            )
+            if slowest != fastest:
+                impacts_of_drop = f"impacts at {slowest} to {fastest}"
+            else:
+                impacts_of_drop = f"an impact at {fastest}"
             notes.append(f"{fitted}, and this drop has {impacts_of_drop} m/s.")
     return notes
 

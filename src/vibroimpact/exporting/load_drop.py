@@ -86,16 +86,15 @@ def drop_of_result(
         )
     deflection = result.deflection
     motion = normal_motion_of(case)
-    surface = (
-        {}
-        if deflection is None
-        else {
+    if deflection is None:
+        surface = {}
+    else:
+        surface = {
             "time": deflection.time,
             "x": deflection.x,
             "y": deflection.y,
             "height": deflection.height.astype(float),
         }
-    )
     if deflection is not None:
         surface["sphere_position"] = deflection.sphere_position
     return Drop(

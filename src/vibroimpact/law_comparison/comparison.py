@@ -121,8 +121,6 @@ def _around(case: Case, law: ContactLaw, speeds: Floats) -> ContactLaw:
     leaves it at each approach speed [m/s].
     """
     table = case.contact.local.liquid
-    return (
-        law
-        if table is None
-        else table.liquid().around(law, speeds, case.sphere.radius, sphere_density(case.sphere))
-    )
+    if table is None:
+        return law
+    return table.liquid().around(law, speeds, case.sphere.radius, sphere_density(case.sphere))

@@ -127,11 +127,10 @@ def _case_under(
             raise InputError(f"{tuned} is tuned to achieve {achieving:g}, so it can't be given too")
         return _tuned(found, table, tuned, achieving)
     except InputError as error:
-        hint = (
-            " (give parameters with LAW.KEY=VALUE)"
-            if "missing" in error.message or "needs" in error.message
-            else ""
-        )
+        if "missing" in error.message or "needs" in error.message:
+            hint = " (give parameters with LAW.KEY=VALUE)"
+        else:
+            hint = ""
         raise InputError(f"{law.name}: {str(error).removeprefix(f'{law.name} ')}{hint}") from None
 
 

@@ -113,11 +113,10 @@ def law_text(law: type[ContactLaw | FrictionLaw]) -> LawText:
         end = _ENDS[law.contact_end]
         tension = _TENSION[law.tension]
         if any(item.metadata["memory"] for item in fields(law)):
-            persistence = (
-                "The state is kept: the next impact on the same spot starts from it."
-                if law.lasting
-                else "The state is reset after each contact."
-            )
+            if law.lasting:
+                persistence = "The state is kept: the next impact on the same spot starts from it."
+            else:
+                persistence = "The state is reset after each contact."
     return LawText(
         name=law.name,
         title=title,

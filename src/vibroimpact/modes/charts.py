@@ -92,11 +92,11 @@ def _chart(name: str, body: BodyModes) -> Chart:
     rows = tuple(tuple(panels[start : start + columns]) for start in range(0, len(panels), columns))
     title = f"Modes of the {name}" if number > 1 else f"The mode of the {name}"
     way = "up" if flat else "outwards"
-    drawn = (
-        f"The first {number} of {len(model.frequencies)} modes, each drawn as large as the others"
-        if number > 1
-        else "The lowest mode"
-    )
+    if number > 1:
+        count = f"{number} of {len(model.frequencies)}"
+        drawn = f"The first {count} modes, each drawn as large as the others"
+    else:
+        drawn = "The lowest mode"
     caption = f"{drawn}; which way is {way} is arbitrary."
     return Chart(
         f"{name}_modes",

@@ -22,11 +22,10 @@ def elastic_rows(case: Case) -> list[tuple[str, str]]:
     for name, body in elastic_bodies(case).items():
         mesh = meshes[name]
         reduction = body.recipe.reduction
-        kept = (
-            f"{reduction.modes} modes"
-            if reduction.modes
-            else f"modes up to {reduction.max_frequency:g} Hz"
-        )
+        if reduction.modes:
+            kept = f"{reduction.modes} modes"
+        else:
+            kept = f"modes up to {reduction.max_frequency:g} Hz"
         stored = "computed already" if mesh["modes_computed"] else "not computed yet"
         rows += [
             (

@@ -452,11 +452,10 @@ def _peak_decay(runs: Runs) -> tuple[TextTable, str]:
         "Peak of the plate's centre of mass",
         *(f"Impact {number} [%]" for number in IMPACTS),
     )
-    where = (
-        f"this holds in these treatments: {', '.join(slowest)}"
-        if slowest
-        else "this holds in none of the three treatments"
-    )
+    if slowest:
+        where = f"this holds in these treatments: {', '.join(slowest)}"
+    else:
+        where = "this holds in none of the three treatments"
     phrase = (
         "The paper states that from impact to impact the acceleration of the plate's centre "
         "of mass decreases more slowly than its "

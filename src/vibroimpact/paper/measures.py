@@ -184,11 +184,10 @@ def values_by_treatment(
     if unresolved is not None:
         low, high = unresolved
         explanation = Explanation("", low, high)
-        few = (
-            "agrees with this range within its few digits"
-            if explanation.holds(value)
-            else "does not lie in this range"
-        )
+        if explanation.holds(value):
+            few = "agrees with this range within its few digits"
+        else:
+            few = "does not lie in this range"
         inside = "lies in this range" if explanation.contains(value) else few
         steps = "in steps fitted to Type 2" if kind == 2 else "in steps found from Type 2"
         phrase["superposed"] += (

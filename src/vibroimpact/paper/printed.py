@@ -77,11 +77,10 @@ class PrintedValue:
     def half(self) -> float:
         """Half a unit of the last significant digit: the largest rounding error."""
         number = Decimal(self.text)
-        exponent = (
-            int(number.as_tuple().exponent)
-            if self.digits is None
-            else number.adjusted() - self.digits + 1
-        )
+        if self.digits is None:
+            exponent = int(number.as_tuple().exponent)
+        else:
+            exponent = number.adjusted() - self.digits + 1
         return float(Decimal("0.5").scaleb(exponent))
 
 

@@ -152,11 +152,9 @@ def grid_error(runs: Runs, step: float, quantity: str, damping: str, impact: int
     theory, simulation = (
         grid_samples(runs, name, step, quantity, impact)[1] for name in ("theory", damping)
     )
-    return (
-        100.0 * (1.0 - float(simulation.max()) / float(theory.max()))
-        if len(theory) and len(simulation)
-        else math.nan
-    )
+    if len(theory) and len(simulation):
+        return 100.0 * (1.0 - float(simulation.max()) / float(theory.max()))
+    return math.nan
 
 
 def grid_samples(

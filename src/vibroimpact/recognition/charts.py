@@ -73,11 +73,10 @@ def _scores_chart(recognition: Recognition) -> Chart:
     )
     bound = ""
     if recognition.bayes_error is not None:
-        counted = (
-            f"for {recognition.bayes_error_sees} alone"
-            if recognition.bayes_error_sees
-            else "that the data set states"
-        )
+        if recognition.bayes_error_sees:
+            counted = f"for {recognition.bayes_error_sees} alone"
+        else:
+            counted = "that the data set states"
         bound = (
             f" Line: the Bayes error {counted}; a lower error means further information, a "
             "leak, or chance."

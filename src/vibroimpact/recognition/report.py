@@ -367,20 +367,20 @@ def sentences(recognition: Recognition) -> Iterator[str]:
     )
     yield from _few(recognition)
     if recognition.bayes_error is not None:
-        least = (
-            f"{_percent(recognition.bayes_error)} %"
-            if recognition.bayes_error >= _LEAST_SHOWN
-            else "less than 0.05 %, which excludes nothing"
-        )
-        bound = (
-            f"The lower bound on the error that the data set states is {least}."
-            if recognition.bayes_error_sees is None
-            else "The lower bound on the error of a classifier that sees only "
-            f"{recognition.bayes_error_sees}, measured up to 50 kHz and 80 dB "
-            f"above the noise with a sensitivity known to 0.1 %, is {least}. A classifier "
-            "that sees more can be better. For a "
-            "band, a noise and a scatter of a sensor vibroimpact bound computes such bounds."
-        )
+        if recognition.bayes_error >= _LEAST_SHOWN:
+            least = f"{_percent(recognition.bayes_error)} %"
+        else:
+            least = "less than 0.05 %, which excludes nothing"
+        if recognition.bayes_error_sees is None:
+            bound = f"The lower bound on the error that the data set states is {least}."
+        else:
+            bound = (
+                "The lower bound on the error of a classifier that sees only "
+                f"{recognition.bayes_error_sees}, measured up to 50 kHz and 80 dB "
+                f"above the noise with a sensitivity known to 0.1 %, is {least}. A classifier "
+                "that sees more can be better. For a "
+                "band, a noise and a scatter of a sensor vibroimpact bound computes such bounds."
+            )
         yield (
             f"{bound} The error of the best classifier is {_percent(best.error.value, digits)} "
             f"% ({_percents(best.error, digits)} %)."

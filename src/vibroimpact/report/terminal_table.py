@@ -185,11 +185,10 @@ def _fitting_widths(columns: list[TerminalColumn], width: int) -> list[int] | No
         if column.text:
             least[number] = min(least[number], width // 2)  # longer words are broken
         if number and column.text:
-            least[number] = (
-                least[number]
-                if widths[number] <= _WIDEST_PHRASE
-                else max(least[number], _LEAST_LINE)
-            )
+            if widths[number] <= _WIDEST_PHRASE:
+                least[number] = least[number]
+            else:
+                least[number] = max(least[number], _LEAST_LINE)
     room = width - _BETWEEN * (len(columns) - 1)
     while sum(widths) > room:
         widest = max(
@@ -208,21 +207,18 @@ def _natural_width(column: TerminalColumn) -> int:
     wrapped above numbers but not above text.
     """
     cells = max((cell_len(cell) for cell in _aligned(column)), default=0)
-    heading = (
-        max(map(cell_len, column.heading.split("\n")))
-        if column.text
-        else _longest_word(column.heading)
-    )
+    if column.text:
+        heading = max(map(cell_len, column.heading.split("\n")))
+    else:
+        heading = _longest_word(column.heading)
     return max(cells, heading)
 
 
 def _least_width(column: TerminalColumn) -> int:
     """Return the least width of a column: its longest word, or the natural width for numbers."""
-    return (
-        max(map(_longest_word, [column.heading, *column.cells]), default=0)
-        if column.text
-        else _natural_width(column)
-    )
+    if column.text:
+        return max(map(_longest_word, [column.heading, *column.cells]), default=0)
+    return _natural_width(column)
 
 
 def _longest_word(phrase: str) -> int:
@@ -274,11 +270,10 @@ def _block(
             )
         for column in below:
             if column.cells[number]:
-                said = (
-                    f"{column.heading}: {column.cells[number]}"
-                    if column.heading
-                    else column.cells[number]
-                )
+                if column.heading:
+                    said = f"{column.heading}: {column.cells[number]}"
+                else:
+                    said = column.cells[number]
                 yield from ((f"    {line}", style) for line in _wrapped(said, width - 4))
 
 

@@ -215,11 +215,9 @@ def _check_history(history: Mapping[str, Any]) -> None:
 def _cause(error: Exception) -> str:
     """Return the cause of a failed read in words."""
     if isinstance(error, KeyError):
-        return (
-            f"it has no {error.args[0]}"
-            if error.args and not str(error.args[0]).startswith("no ")
-            else str(error.args[0])
-        )
+        if error.args and not str(error.args[0]).startswith("no "):
+            return f"it has no {error.args[0]}"
+        return str(error.args[0])
     return short_reason(error)
 
 

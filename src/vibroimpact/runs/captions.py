@@ -141,11 +141,10 @@ def _loops(result: Result) -> str:
     first, last = (
         impact_text(result, impact, "energy_lost_J", "J") for impact in (contacts[0], contacts[-1])
     )
-    also = (
-        " and the energy that the sphere's vibration took up. Lost"
-        if "sphere" in result.peaks
-        else ""
-    )
+    if "sphere" in result.peaks:
+        also = " and the energy that the sphere's vibration took up. Lost"
+    else:
+        also = ""
     if result.deformation.get("treatment") == "identified":
         also = " and the energy stored in the local element at release. Lost"
     phrase = (
@@ -187,11 +186,10 @@ def _vibration(result: Result) -> str:
     left in their motion; empty if none moves.
     """
     least = _NOTHING_LEFT * result.energy["input_J"]
-    bodies = (
-        {"the vibration of the sphere": ["sphere_vibration_J", "sphere_strain_J"]}
-        if "sphere" in result.peaks
-        else {}
-    )
+    if "sphere" in result.peaks:
+        bodies = {"the vibration of the sphere": ["sphere_vibration_J", "sphere_strain_J"]}
+    else:
+        bodies = {}
     of_plate = ["plate_kinetic_J", "plate_strain_J"]
     # it may be free, and rigid
     if (
@@ -356,12 +354,12 @@ def sensor_caption(result: Result, name: str) -> str:
 def sensors_left_out(result: Result) -> str:
     """Return a sentence stating that only some sensors are drawn; empty if all are."""
     more = len(result.signals) - MOST
-    return (
-        f"Of the {len(result.signals)} sensors the first {MOST} are drawn; the signals of "
-        "all are in result.nc."
-        if more > 0
-        else ""
-    )
+    if more > 0:
+        return (
+            f"Of the {len(result.signals)} sensors the first {MOST} are drawn; the signals of "
+            "all are in result.nc."
+        )
+    return ""
 
 
 def _after_first(result: Result, *names: str) -> float:

@@ -142,11 +142,10 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
         )
         rows.append(("to calibrate", f"{tuned}; a run ignores [calibrate]"))
     if isinstance(laws[0], CompliantLaw) and laws[0].lasting:
-        where = (
-            "on the same spot: the dents of earlier ones remain"
-            if case.drop.same_spot
-            else "on fresh surfaces"
-        )
+        if case.drop.same_spot:
+            where = "on the same spot: the dents of earlier ones remain"
+        else:
+            where = "on fresh surfaces"
         rows.append(
             ("each impact", f"{where} (drop.same_spot = {str(case.drop.same_spot).lower()})")
         )
@@ -272,16 +271,14 @@ def _coupling_rows(case: Case) -> list[tuple[str, str]]:
         )
     rows = [("local compliance", "; ".join(phrase))] if phrase else []
     for sensor in case.sensors:
-        place = (
-            sensor.position
-            if isinstance(sensor.position, str)
-            else f"({sensor.position[0]:g}, {sensor.position[1]:g}) m"
-        )
-        where = (
-            f"of the support at {place}"
-            if sensor.subject == "support"
-            else f"at {place}, {sensor.face} face"
-        )
+        if isinstance(sensor.position, str):
+            place = sensor.position
+        else:
+            place = f"({sensor.position[0]:g}, {sensor.position[1]:g}) m"
+        if sensor.subject == "support":
+            where = f"of the support at {place}"
+        else:
+            where = f"at {place}, {sensor.face} face"
         phrase = [
             f"{sensor.quantity} {where}",
             *_instrument(sensor),
@@ -309,11 +306,10 @@ def _electronics(sensor: SensorSection) -> list[str]:
     phrase = []
     unit = sensor.sensor().unit
     if (amplifier := sensor.amplifier) is not None:
-        hum = (
-            f"hum of {amplifier.hum:g} {unit} at {amplifier.mains:g} Hz"
-            if amplifier.hum
-            else "no hum"
-        )
+        if amplifier.hum:
+            hum = f"hum of {amplifier.hum:g} {unit} at {amplifier.mains:g} Hz"
+        else:
+            hum = "no hum"
         phrase.append(
             f"amplifier (gain {amplifier.gain:g}; noise {amplifier.noise:g} {unit}; {hum})"
         )
@@ -345,9 +341,9 @@ def _restitution_lines(case: Case) -> list[str]:
 
 def _material_text(material: Material) -> str:
     name = material.name or "a material"
+    if material is RIGID:
+        return name
     return (
-        name
-        if material is RIGID
-        else f"{name} (E {material.youngs_modulus:.4g} Pa, nu {material.poissons_ratio:g}, "
+        f"{name} (E {material.youngs_modulus:.4g} Pa, nu {material.poissons_ratio:g}, "
         f"{material.density:g} kg/m3)"
     )

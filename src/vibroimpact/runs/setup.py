@@ -170,11 +170,10 @@ def _drop_words(result: Result) -> str:
         ]
         down = parts[0]
         speed = float(np.linalg.norm(parts))
-        angle = (
-            f" at {np.degrees(np.arccos(down / speed)):.4g}° from the normal"
-            if down < speed
-            else ""
-        )
+        if down < speed:
+            angle = f" at {np.degrees(np.arccos(down / speed)):.4g}° from the normal"
+        else:
+            angle = ""
         return f"arrives at {as_given(speed, 'm/s')}{angle}"
     return f"{as_given(start, 'm')} above {level_below(result)}"
 

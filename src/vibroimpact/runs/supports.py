@@ -53,11 +53,9 @@ def plate_extent(result: Result) -> Extent | None:
             (float(side[0]), float(side[-1])) for side in (deflection.x, deflection.y)
         )
         return Extent((left, right), (front, back), thickness)
-    return (
-        Extent((-0.5 * size[0], 0.5 * size[0]), (-0.5 * size[1], 0.5 * size[1]), thickness)
-        if size
-        else None
-    )
+    if size:
+        return Extent((-0.5 * size[0], 0.5 * size[0]), (-0.5 * size[1], 0.5 * size[1]), thickness)
+    return None
 
 
 def single_supports(case: ResolvedCase) -> list[Mapping[str, Any]]:
@@ -73,11 +71,9 @@ def single_supports(case: ResolvedCase) -> list[Mapping[str, Any]]:
     """
     given = case.get("plate", {}).get("supports", ())
     if isinstance(given, str):
-        return (
-            []
-            if given == "free"
-            else [{"type": "edge", "edge": edge, "condition": given} for edge in _EDGES]
-        )
+        if given == "free":
+            return []
+        return [{"type": "edge", "edge": edge, "condition": given} for edge in _EDGES]
     supports: list[Mapping[str, Any]] = []
     for support in given:
         if "spacing" in support:  # four of them, at the corners of a rectangle

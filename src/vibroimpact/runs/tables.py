@@ -179,11 +179,10 @@ def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
     """
     put_in = result.energy["input_J"]
     scale = multiple("J", result.energy["input_J"])
-    parts = (
-        {"friction_J": tuple(FRICTION_PARTS)}
-        if result.energy.keys() >= FRICTION_PARTS.keys()
-        else {}
-    )
+    if result.energy.keys() >= FRICTION_PARTS.keys():
+        parts = {"friction_J": tuple(FRICTION_PARTS)}
+    else:
+        parts = {}
     entries = (*LEDGER, *VIBRATION_LEDGER, *SHAKEN_LEDGER, *OBLIQUE_LEDGER, *FLUID_LEDGER)
     values = {
         name: result.energy[name]

@@ -117,11 +117,10 @@ def _chart(
     name, title, caption = phrase
     panels = []
     for row in rows:
-        values = (
-            history[row.columns[0]]
-            if len(row.columns) == 1
-            else np.sum([history[column] for column in row.columns], axis=0)
-        )
+        if len(row.columns) == 1:
+            values = history[row.columns[0]]
+        else:
+            values = np.sum([history[column] for column in row.columns], axis=0)
         panels.append(
             (
                 Panel(
@@ -143,11 +142,10 @@ def plate_span(result: Result, impact: int = 0) -> float:
     """
     touches = result.impacts["time_s"]
     duration = float(result.impacts["duration_s"][impact])
-    until = (
-        float(touches[impact + 1])
-        if len(touches) > impact + 1
-        else float(result.history["time_s"][-1])
-    )
+    if len(touches) > impact + 1:
+        until = float(touches[impact + 1])
+    else:
+        until = float(result.history["time_s"][-1])
     spans = [resolved_span(1.0 / lowest) for lowest in result.frequencies("plate")[:1]]
     return max(min([*spans, until - float(touches[impact])]), 1.2 * duration)
 

@@ -150,11 +150,10 @@ def _responses(correlation: Correlation) -> Chart:
                 )
             )
         rows += [(panel,) for panel in panels]
-    what = (
-        "Frequency responses to the force (estimator H1)"
-        if correlation.hits
-        else "Spectra of record and simulation"
-    )
+    if correlation.hits:
+        what = "Frequency responses to the force (estimator H1)"
+    else:
+        what = "Spectra of record and simulation"
     caption = (
         f"{what}, with the same window and spectral leakage. Ticks mark the modes of the "
         f"case.{those_drawn(len(correlation.sensors))}"

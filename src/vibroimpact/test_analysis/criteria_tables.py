@@ -172,19 +172,12 @@ def mode_record(pair: ModePair) -> dict[str, Any]:
 
 
 def _mode_values(pair: ModePair) -> list[Any]:
-    of_case = (
-        [pair.frequency, pair.damping_ratio, pair.response]
-        if pair.number is not None
-        else 3 * [None]
-    )
-    mode = pair.measured
-    measured = (
-        6 * [None]
-        if mode is None
-        else [
-            part
-            for quantity in (mode.frequency, mode.damping_ratio)
-            for part in (quantity.value, *quantity.interval)
-        ]
-    )
+    of_case: list[Any] = 3 * [None]
+    if pair.number is not None:
+        of_case = [pair.frequency, pair.damping_ratio, pair.response]
+    measured: list[Any] = 6 * [None]
+    if pair.measured is not None:
+        frequency = pair.measured.frequency
+        ratio = pair.measured.damping_ratio
+        measured = [frequency.value, *frequency.interval, ratio.value, *ratio.interval]
     return [pair.number, *of_case, *measured, pair.damping_measured, pair.remark]

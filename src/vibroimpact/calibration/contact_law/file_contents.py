@@ -34,14 +34,13 @@ def calibration_table(calibration: Calibration) -> dict[str, Any]:
         The calibration.
     """
     fit, (speeds, values) = calibration.fit, calibration.impacts
-    curve = (
-        None
-        if calibration.curve is None
-        else {
+    if calibration.curve is None:
+        curve = None
+    else:
+        curve = {
             "approach_speed_m_s": _plain(calibration.curve[0]),
             "value": _plain(calibration.curve[1]),
         }
-    )
     return {
         "version": __version__,
         "name": case_name(calibration.problem),

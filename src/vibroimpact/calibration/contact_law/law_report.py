@@ -44,11 +44,10 @@ def values_table(calibration: Calibration) -> Table:
     """Return the table of the matched impacts."""
     seen = calibration.observations
     headers = [("", ""), ("Approach speed", "m/s"), (calibration.parameter, calibration.unit)]
-    speeds = (
-        known_texts(seen.speeds, seen.speed_deviations, 5)
-        if seen.measured
-        else column_texts(seen.speeds)
-    )
+    if seen.measured:
+        speeds = known_texts(seen.speeds, seen.speed_deviations, 5)
+    else:
+        speeds = column_texts(seen.speeds)
     if calibration.intervals is None:
         columns = [list(seen.labels), speeds, column_texts(calibration.values, 6)]
     else:
@@ -112,11 +111,10 @@ def function_words(calibration: Calibration) -> str:
     """
     function = calibration.fit.function
     phrase = ""
-    half = (
-        calibration.fit.half_widths(calibration.confidence)
-        if calibration.observations.measured
-        else np.zeros(function.degree + 1)
-    )
+    if calibration.observations.measured:
+        half = calibration.fit.half_widths(calibration.confidence)
+    else:
+        half = np.zeros(function.degree + 1)
     for power, (value, spread) in enumerate(zip(function.coefficients, half, strict=True)):
         term = known_text(abs(value), float(spread)) + (
             _POWERS[power] if power < len(_POWERS) else f" v^{power}"
@@ -145,11 +143,10 @@ def fit_sentences(calibration: Calibration) -> list[str]:
                 "Uncertainty of its coefficients: ± "
                 f"{deviations} at {_percent(calibration.confidence)}."
             )
-        way = (
-            f"by bootstrap with {calibration.bootstrap} draws"
-            if calibration.bootstrap
-            else "to first order"
-        )
+        if calibration.bootstrap:
+            way = f"by bootstrap with {calibration.bootstrap} draws"
+        else:
+            way = "to first order"
         if calibration.intervals is not None:
             sentences.append(
                 f"Intervals are {way}, from "
@@ -190,11 +187,10 @@ def given_sentences(calibration: Calibration) -> list[str]:
         if np.all(np.abs(off) < 1e-6):
             continue
         worst = int(np.nanargmax(np.abs(off)))
-        half = (
-            0.0
-            if calibration.intervals is None
-            else float(0.5 * np.ptp(calibration.intervals[worst]))
-        )
+        if calibration.intervals is None:
+            half = 0.0
+        else:
+            half = float(0.5 * np.ptp(calibration.intervals[worst]))
         texts = (
             digits(calibration.given[worst], 6),
             known_text(float(calibration.values[worst]), half),
@@ -256,11 +252,10 @@ def match_words(calibration: Calibration) -> str:
 
 def ways_words(calibration: Calibration) -> str:
     """Return in words the ways of prescribing the value."""
-    chain = (
-        ""
-        if set(calibration.weights) & set(REBOUNDS)
-        else ". The rebound is not matched, so that the speeds of later impacts differ"
-    )
+    if set(calibration.weights) & set(REBOUNDS):
+        chain = ""
+    else:
+        chain = ". The rebound is not matched, so that the speeds of later impacts differ"
     return "; ".join(f"{way}: {_MEANING[way]}" for way in WAYS) + chain
 
 

@@ -53,11 +53,10 @@ def friction_sentences(calibration: FrictionCalibration) -> list[str]:
                 strict=True,
             )
         ]
-        way = (
-            f"by bootstrap with {calibration.bootstrap} draws"
-            if calibration.bootstrap
-            else "by the profile of the sum of squares"
-        )
+        if calibration.bootstrap:
+            way = f"by bootstrap with {calibration.bootstrap} draws"
+        else:
+            way = "by the profile of the sum of squares"
         source = "the scatter of the measurement"
         if calibration.impacts.seen.deviations_known:
             more = " and the scatter beyond them" if math.isfinite(calibration.freedom) else ""
@@ -167,11 +166,10 @@ def friction_document(calibration: FrictionCalibration) -> dict[str, Any]:
     calibration : FrictionCalibration
         The calibration.
     """
-    ends = (
-        np.full((len(calibration.values), 2), np.nan)
-        if calibration.intervals is None
-        else calibration.intervals
-    )
+    if calibration.intervals is None:
+        ends = np.full((len(calibration.values), 2), np.nan)
+    else:
+        ends = calibration.intervals
     return {
         "version": __version__,
         "name": case_name(calibration.problem),

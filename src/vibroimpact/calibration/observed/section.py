@@ -61,11 +61,10 @@ class RestitutionTarget(Section):
             )
         if isinstance(several, tuple) and (speeds is None or len(speeds) != len(several)):
             have = "no approach_speed is given" if speeds is None else f"there are {len(speeds)}"
-            need = (
-                f"{len(several)} restitutions need"
-                if len(several) > 1
-                else "a list of one restitution needs"
-            )
+            if len(several) > 1:
+                need = f"{len(several)} restitutions need"
+            else:
+                need = "a list of one restitution needs"
             raise InputError(f"{need} as many approach speeds, and {have}", "approach_speed")
         if not isinstance(several, tuple) and (speeds or self.standard_deviation):
             key = "approach_speed" if speeds else "standard_deviation"

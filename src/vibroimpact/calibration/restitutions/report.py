@@ -79,11 +79,10 @@ def noise_sentence(restitutions: Restitutions) -> str:
             "the standard "
             f"deviation{'s of the table and the scatter beyond them' if many else ' of the table'}"
         ]
-    what = (
-        f"{restitutions.rounding:g} m/s to which the separation speeds"
-        if restitutions.by_speeds
-        else f"{restitutions.rounding:g} to which the values"
-    )
+    if restitutions.by_speeds:
+        what = f"{restitutions.rounding:g} m/s to which the separation speeds"
+    else:
+        what = f"{restitutions.rounding:g} to which the values"
     of.append(f"the step of {what} are rounded")
     means = "" if (restitutions.count == 1.0).all() else " A scatter is that of single impacts."
     exact = "approach speeds" if restitutions.by_speeds else "speeds"

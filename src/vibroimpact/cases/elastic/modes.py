@@ -337,11 +337,10 @@ def _doubts_of_mass(
     extent = model.mesh.extent
     size = " x ".join(f"{side:.3g}" for side in (*extent[:2], model.thickness or extent[2]))
     said = f"the mesh of the {name} is {size} m large and weighs {model.properties.mass:.4g} kg"
-    remedy = (
-        'give mesh = { file = "...", unit = "mm" }'
-        if brought
-        else 'write "520 mm", as a bare number is in metres'
-    )
+    if brought:
+        remedy = 'give mesh = { file = "...", unit = "mm" }'
+    else:
+        remedy = 'write "520 mm", as a bare number is in metres'
     hint = f"; if it is in millimetres, {remedy}" if extent.max() > _LARGE else ""
     volume = None
     if name == "sphere":

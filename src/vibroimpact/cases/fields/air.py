@@ -48,11 +48,9 @@ class AirTable(Section):
                 "leave one of them out",
                 "drag_coefficient",
             )
-        return (
-            {"viscosity": AIR_VISCOSITY, **table}
-            if isinstance(table, dict) and "drag_coefficient" not in table
-            else table
-        )
+        if isinstance(table, dict) and "drag_coefficient" not in table:
+            return {"viscosity": AIR_VISCOSITY, **table}
+        return table
 
     def air(self) -> Air:
         """Return the air."""

@@ -150,11 +150,10 @@ class _Fault:
                 f"table{_takes(listed(keys_of(inside)) if inside is not None else self.about)}"
             )
         if self.kind in ("tuple_type", "list_type") and section_at(self.section, self.path):
-            is_one = (
-                "this is one table, and it must be"
-                if isinstance(self.value, dict)
-                else f"{given} is not allowed; it must be"
-            )
+            if isinstance(self.value, dict):
+                is_one = "this is one table, and it must be"
+            else:
+                is_one = f"{given} is not allowed; it must be"
             return f"{is_one} a list of tables; write [[{'.'.join(self.path)}]] above each"
         if self.kind in ("tuple_type", "list_type"):
             return f"{given} is not a list{_takes(self.about)}"
@@ -164,11 +163,10 @@ class _Fault:
             return f"{given} is not allowed; it takes {self.context['expected']}"
         if self.kind == "string_type" and isinstance(self.value, (bool, int, float)):
             return f"{given} is not a text; put it in quotes"
-        hint = (
-            did_you_mean(self.value, re.findall(r'"([^"]*)"', self.wanted))
-            if isinstance(self.value, str)
-            else ""
-        )
+        if isinstance(self.value, str):
+            hint = did_you_mean(self.value, re.findall(r'"([^"]*)"', self.wanted))
+        else:
+            hint = ""
         return f"{given} is not allowed; it must be {self.wanted}{'.' if hint else ''}{hint}"
 
     def _unknown_key(self) -> str:

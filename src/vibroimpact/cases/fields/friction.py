@@ -32,11 +32,10 @@ def read_friction(value: Any) -> FrictionTable | None:
     """
     check_friction_law(value)
     # "none" may have what others take: so a law can be switched off, or swept
-    laws = (
-        list(friction_laws().values())
-        if value["law"] == NO_FRICTION
-        else [find_friction_law(value["law"])]
-    )
+    if value["law"] == NO_FRICTION:
+        laws = list(friction_laws().values())
+    else:
+        laws = [find_friction_law(value["law"])]
     known = {item.name: item for law in laws for item in fields(law)}
     parameters = {}
     for key, given in value.items():

@@ -21,11 +21,9 @@ the force.
 
 
 def _number(drops: Conditions) -> Array:
-    return (
-        drops.summary.deflection / drops.size[2]
-        if drops.size is not None and drops.model("plate") == "elastic"
-        else math.nan
-    )
+    if drops.size is not None and drops.model("plate") == "elastic":
+        return drops.summary.deflection / drops.size[2]
+    return math.nan
 
 
 def stiffening(ratio: float, *, clamped: bool) -> tuple[float, float]:

@@ -46,11 +46,10 @@ def _medium(drops: Conditions) -> Mapping[str, Array] | None:
 
 
 def _drag_sentence(drop: Conditions, number: float) -> str:
-    remedy = (
-        "give a measured one as drop.air.drag_coefficient, in place of drop.air.viscosity"
-        if drop.case["drop"].get("air") is not None
-        else "take the speeds after flights for uncertain"
-    )
+    if drop.case["drop"].get("air") is not None:
+        remedy = "give a measured one as drop.air.drag_coefficient, in place of drop.air.viscosity"
+    else:
+        remedy = "take the speeds after flights for uncertain"
     return (
         f"the Reynolds number of the flight reaches {HIGHEST_REYNOLDS * number:.2g}: from "
         f"about {HIGHEST_REYNOLDS:g} on the drag "

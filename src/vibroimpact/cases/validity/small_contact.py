@@ -19,11 +19,10 @@ def _number(drops: Conditions) -> Array:
 
 
 def _sentence(drop: Conditions, part: float) -> str:
-    whose = (
-        "the sphere's"
-        if drop.case["plate"].get("radius") is None
-        else "the effective radius of both spheres"
-    )
+    if drop.case["plate"].get("radius") is None:
+        whose = "the sphere's"
+    else:
+        whose = "the effective radius of both spheres"
     return (
         f"the contact radius reaches about {part:.2g} of {whose}, and strains about "
         f"{0.2 * part:.2g}: Hertz's theory, and its "

@@ -116,11 +116,9 @@ def _pressure_ratio(drops: Conditions) -> Array:
     """Return the peak pressure over the effective modulus; NaN if a strength of each body
     is known or the law models yielding.
     """
-    return (
-        drops.peak_pressure / drops.modulus
-        if _bodies_without_strength(drops) and not drops.yields
-        else math.nan
-    )
+    if _bodies_without_strength(drops) and not drops.yields:
+        return drops.peak_pressure / drops.modulus
+    return math.nan
 
 
 def _unknown_sentence(drop: Conditions, _: float) -> str:

@@ -129,11 +129,9 @@ def ratio_text(ratio: float) -> str:
     >>> ratio_text(64.3), ratio_text(1 / 31622.8)
     ('64 times more', '31,623 times less')
     """
-    return (
-        f"{count_text(ratio)} times more"
-        if ratio > 1.0
-        else f"{count_text(1.0 / ratio)} times less"
-    )
+    if ratio > 1.0:
+        return f"{count_text(ratio)} times more"
+    return f"{count_text(1.0 / ratio)} times less"
 
 
 def count_text(value: float) -> str:

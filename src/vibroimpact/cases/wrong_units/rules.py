@@ -191,11 +191,10 @@ def contact_stiffness(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plau
             f"is {ratio_text(value / reference)} than {phrase} {number_text(reference, 4)} {unit}"
         )
 
-    remedy = (
-        "leave it out to take Hertz's"
-        if exponent == 1.5
-        else f"something like {number_text(reference, 1)} {unit} is usual"
-    )
+    if exponent == 1.5:
+        remedy = "leave it out to take Hertz's"
+    else:
+        remedy = f"something like {number_text(reference, 1)} {unit} is usual"
     return PlausibleRange(
         low=low, high=300.0 * reference, below=said, above=said, reference=reference, remedy=remedy
     )

@@ -264,12 +264,10 @@ def tension_in(
         y = rules.vectors[vector, PLACE, node]
         if node < count:
             force = room[STATIC, node] + room[LOSS, node]
+        elif is_last:
+            force = 0.0
         else:
-            force = (
-                0.0
-                if is_last
-                else force_of(line, LineState(0.0, segment.shallow, -math.sqrt(phase.reached), 0.0))
-            )
+            force = force_of(line, LineState(0.0, segment.shallow, -math.sqrt(phase.reached), 0.0))
         if force < -slack:
             bracket = Bracket(last_y, y, last, force, 0)
             if node == 0 or not last > 0.0:

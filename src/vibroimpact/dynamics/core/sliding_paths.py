@@ -265,11 +265,10 @@ def follow_slip(
                 state = settle(friction, curve, part_start, state)
             for part in range(parts):
                 is_last = part + 1 == parts
-                part_end = (
-                    shortened(end, 1.0 / parts)
-                    if is_last
-                    else normal_of_part(start, end, part + 1, parts)
-                )
+                if is_last:
+                    part_end = shortened(end, 1.0 / parts)
+                else:
+                    part_end = normal_of_part(start, end, part + 1, parts)
                 state = advance_step(friction, curve, part_start, part_end, state)
                 part_start = part_end
             begins = False

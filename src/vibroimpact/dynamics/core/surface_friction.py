@@ -279,11 +279,10 @@ def sliding_part(
     imbalance = 0.0
     for direction in range(directions):
         for node in range(nodes):
-            own = (
-                velocity[direction, node]
-                if direction <= AT_Y
-                else spins[direction - ROLLING_X, node]
-            )
+            if direction <= AT_Y:
+                own = velocity[direction, node]
+            else:
+                own = spins[direction - ROLLING_X, node]
             slip[direction, node] = own + surface[direction, node]
             weight = length * basis.integral[last, node]
             taken += weight * force[direction, node] * slip[direction, node]

@@ -45,11 +45,9 @@ class ImpactConditions:
 
     def under(self, law: CompliantLaw) -> ImpactConditions:
         """Return the conditions with another law, or with the same law and another memory."""
-        return (
-            self
-            if law is self.law
-            else replace(self, law=law, floor=law.release_level + np.zeros(len(self.mass)))
-        )
+        if law is self.law:
+            return self
+        return replace(self, law=law, floor=law.release_level + np.zeros(len(self.mass)))
 
 
 def impact_conditions_of(

@@ -108,11 +108,10 @@ class Oblique:
     @property
     def values(self) -> list[Array]:
         """All values that may be arrays."""
-        law = (
-            []
-            if self.friction is None
-            else [getattr(self.friction, item.name) for item in fields(self.friction)]
-        )
+        if self.friction is None:
+            law = []
+        else:
+            law = [getattr(self.friction, item.name) for item in fields(self.friction)]
         return [*self.velocity, *self.spin, *self.position, *self.gravity, self.inertia_ratio, *law]
 
     @property

@@ -444,11 +444,9 @@ class Problem:
     @property
     def sphere_inertia(self) -> Array:
         """Moment of inertia of the sphere about an axis through its centre [kg m^2]."""
-        return (
-            self._unit_inertia * self.inertia_ratio
-            if self.sphere.inertia is None
-            else self.sphere.inertia
-        )
+        if self.sphere.inertia is None:
+            return self._unit_inertia * self.inertia_ratio
+        return self.sphere.inertia
 
     @property
     def inertia_ratio(self) -> Array:
@@ -506,22 +504,18 @@ class Problem:
 
         They are as `PlateMotion.at` takes them.
         """
-        return (
-            np.zeros(0, dtype=complex)
-            if self.motion is None
-            else steady_phasors(self.motion, self.plate.modes)
-        )
+        if self.motion is None:
+            return np.zeros(0, dtype=complex)
+        return steady_phasors(self.motion, self.plate.modes)
 
     def surface(self, time: Array) -> Floats:
         """Return the motion of that surface upwards at times [s] (...), (3, ...).
 
         It is displacement [m], velocity [m/s] and acceleration [m/s^2].
         """
-        return (
-            np.zeros((3, *np.shape(time)))
-            if self.motion is None
-            else self.motion.at(time, self.surface_phasors)
-        )
+        if self.motion is None:
+            return np.zeros((3, *np.shape(time)))
+        return self.motion.at(time, self.surface_phasors)
 
     @cached_property
     def shape(self) -> tuple[int, ...]:

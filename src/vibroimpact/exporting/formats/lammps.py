@@ -177,11 +177,10 @@ def _notes(drop: Drop) -> list[str]:
             "LAMMPS has the moment of inertia of a solid sphere, which does not matter "
             "without friction."
         )
-    where = (
-        f"{first_speed:.6g} m/s, the speed of the first impact"
-        if len(dampings) == 1
-        else "the speed of each impact of this drop"
-    )
+    if len(dampings) == 1:
+        where = f"{first_speed:.6g} m/s, the speed of the first impact"
+    else:
+        where = "the speed of each impact of this drop"
     if not dampings[0].exact:
         notes.append(
             f"LAMMPS has no {law.name}; its {_normal_model(drop)} with damping {dampings[0].model} "

@@ -127,11 +127,10 @@ def _notes(drop: Drop) -> list[str]:
             f"The exponent {exponent:g} of the spring can't be represented, so durations "
             "at other speeds differ."
         )
-    changing = (
-        "; parameters that change from impact to impact can't be represented."
-        if len(laws) > 1
-        else "."
-    )
+    if len(laws) > 1:
+        changing = "; parameters that change from impact to impact can't be represented."
+    else:
+        changing = "."
     notes.append("Its restitution is the same at every speed" + changing)
     return notes
 

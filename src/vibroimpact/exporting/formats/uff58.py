@@ -101,11 +101,10 @@ def history_rate(drop: Drop) -> float | None:
     of ten, so that the step is exact in the few digits of the format. None if no contact has a
     positive duration, or there would be too many samples.
     """
-    durations = (
-        drop.impacts["duration_s"][drop.impacts["duration_s"] > 0.0]
-        if drop.impacts
-        else np.zeros(0)
-    )
+    if drop.impacts:
+        durations = drop.impacts["duration_s"][drop.impacts["duration_s"] > 0.0]
+    else:
+        durations = np.zeros(0)
     if not len(durations) or not len(drop.history.get("time_s", ())):
         return None
     needed = _IN_CONTACT / float(durations.min())

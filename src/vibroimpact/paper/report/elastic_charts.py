@@ -177,11 +177,10 @@ def sphere_chart(shown: ComparedQuantity, runs: Runs) -> Chart:
     runs : Runs
         The simulations.
     """
-    rigid = (
-        [ResponseLine("Type 1, both rigid", _ROLES[0], runs.response("type1-variable"))]
-        if shown in SPHERE_MOTION
-        else []
-    )
+    if shown in SPHERE_MOTION:
+        rigid = [ResponseLine("Type 1, both rigid", _ROLES[0], runs.response("type1-variable"))]
+    else:
+        rigid = []
     rows = {
         treatment.capitalize(): [
             *rigid,

@@ -120,11 +120,9 @@ def difference_text(row: ComparedValue) -> str:
 
 def allowed_text(row: ComparedValue) -> str:
     """Return the allowed relative difference in per cent; a dash for a printed bound."""
-    return (
-        f"±{_NO_BREAK}{digits(100.0 * row.allowed / abs(row.printed.value), 1)}{_NO_BREAK}%"
-        if row.printed.relation == "="
-        else MISSING
-    )
+    if row.printed.relation == "=":
+        return f"±{_NO_BREAK}{digits(100.0 * row.allowed / abs(row.printed.value), 1)}{_NO_BREAK}%"
+    return MISSING
 
 
 def verdict_text(row: ComparedValue) -> str:

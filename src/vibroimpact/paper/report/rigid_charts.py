@@ -78,11 +78,10 @@ def rigid_chart(content: RigidFigure, runs: Runs) -> Chart:
         return MARGIN * longest, (1.0 + MARGIN) * longest
 
     touch = float(several[0].problem.sphere.contact_offset)
-    views = (
-        impact_views(several, shown, touch, "From first touch")
-        if content.column == "position_m"
-        else impact_views(several, shown)
-    )
+    if content.column == "position_m":
+        views = impact_views(several, shown, touch, "From first touch")
+    else:
+        views = impact_views(several, shown)
     timeline = history_column(content.column)
     lines = tuple(
         response_line(timeline, response, views, name, _ROLES[name])

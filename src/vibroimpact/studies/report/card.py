@@ -126,11 +126,10 @@ def _following(study: Study) -> list[str]:
     for of_class, over in groups:
         for key, value in over.items():
             if isinstance(value, Mapping) and "of" in value:
-                drawn = (
-                    f", with a factor that is drawn once a {value['each']}"
-                    if value.get("each")
-                    else ""
-                )
+                if value.get("each"):
+                    drawn = f", with a factor that is drawn once a {value['each']}"
+                else:
+                    drawn = ""
                 sentences.append(f"`{key}`{of_class} follows `{value['of']}`{drawn}")
     return sentences
 

@@ -102,11 +102,10 @@ def level_curves(
         drop_descriptions = np.array(
             drop_texts(study, results_of(study, outputs), drop_numbers(study)), dtype=object
         )
-        drop_descriptions = (
-            drop_descriptions.reshape([len(axis.values) for axis in axes])
-            if axes[0] is over
-            else drop_descriptions.reshape([len(axis.values) for axis in axes]).T
-        )
+        if axes[0] is over:
+            drop_descriptions = drop_descriptions.reshape([len(axis.values) for axis in axes])
+        else:
+            drop_descriptions = drop_descriptions.reshape([len(axis.values) for axis in axes]).T
         texts = [tuple(drop_descriptions[order, level]) for level in levels]
     panels = []
     for output in outputs:
@@ -121,12 +120,13 @@ def level_curves(
                 across, result_axis(output, ""), tuple(marks), shortened(visible(output.title), 60)
             )
         )
-    phrase = (
-        ""
-        if len(axes) == 2
-        else " Two of the keys, those with the largest effect on the first result where it is "
-        "known; lines are medians over the others."
-    )
+    if len(axes) == 2:
+        phrase = ""
+    else:
+        phrase = (
+            " Two of the keys, those with the largest effect on the first result where it is "
+            "known; lines are medians over the others."
+        )
     caption = f"A line for each {each.words}.{phrase} {keys_told([over, each])}"
     return Chart(
         "curves", f"Over the {over.words}, for each {each.words}", in_rows(panels), caption, HEIGHT
@@ -180,11 +180,9 @@ def _impact_words(study: Study, axis: StudyAxis) -> str:
             f"{keys_told([axis])}"
         )
     of_many = f" (the first {_MOST_IMPACTS} of {kept})" if kept > _MOST_IMPACTS else ""
-    return (
-        f"{phrase}, a line an impact{of_many}. {keys_told([axis])}"
-        if kept > 1
-        else f"{phrase}. {keys_told([axis])}"
-    )
+    if kept > 1:
+        return f"{phrase}, a line an impact{of_many}. {keys_told([axis])}"
+    return f"{phrase}. {keys_told([axis])}"
 
 
 def _column(study: Study, output: Output) -> str:

@@ -173,11 +173,10 @@ def drop_texts(
             (shortened(visible(title), 60), result) for title, result in results.items()
         )
     ]
-    heads = (
-        [""] * len(numbers)
-        if impacts is None
-        else [f", impact {impact}" for impact in impacts.tolist()]
-    )
+    if impacts is None:
+        heads = [""] * len(numbers)
+    else:
+        heads = [f", impact {impact}" for impact in impacts.tolist()]
     texts = []
     for place, (number, head) in enumerate(zip(numbers.tolist(), heads, strict=True)):
         lines = [

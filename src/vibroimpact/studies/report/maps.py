@@ -66,12 +66,13 @@ def maps_chart(
             texts=texts,
         )
         panels.append(Panel(x, y, (cells,), shortened(visible(output.title), 60)))
-    phrase = (
-        ""
-        if len(axes) == 2
-        else "Two of the keys, those with the largest effect on the first result where it is "
-        "known; colours are medians over the others. "
-    )
+    if len(axes) == 2:
+        phrase = ""
+    else:
+        phrase = (
+            "Two of the keys, those with the largest effect on the first result where it is "
+            "known; colours are medians over the others. "
+        )
     caption = (
         f"{phrase}Levels are at the middle of their cells; a cell without a colour has no "
         f"value. {keys_told([across, up])}"

@@ -76,11 +76,10 @@ def study_outputs(study: Study) -> list[Output]:
     """Return the results with their statistics, the most important first."""
     outputs = []
     for name in output_names(study):
-        title = (
-            PEAK_TABLE[name].title
-            if name in PEAK_TABLE
-            else f"Largest reading of {name.removesuffix(SENSOR_PEAK)}"
-        )
+        if name in PEAK_TABLE:
+            title = PEAK_TABLE[name].title
+        else:
+            title = f"Largest reading of {name.removesuffix(SENSOR_PEAK)}"
         short = PEAK_TABLE[name].short if name in PEAK_TABLE else title
         outputs.append(
             Output(
@@ -106,20 +105,16 @@ def independent_drops(study: Study) -> int:
     """Return the number of leading drops that are independent of each other: blocks A and
     B in the design "saltelli", else all.
     """
-    return (
-        study.size
-        if study.design != "saltelli"
-        else 2 * (study.size // (2 + len(study.coordinates)))
-    )
+    if study.design != "saltelli":
+        return study.size
+    return 2 * (study.size // (2 + len(study.coordinates)))
 
 
 def independent_values(study: Study, name: str) -> NDArray[Any]:
     """Return a result in all independent drops, flat; NaN for failed drops."""
-    return (
-        read_output(study, name)
-        if study.is_grid
-        else read_output(study, name, slice(0, independent_drops(study)))
-    )
+    if study.is_grid:
+        return read_output(study, name)
+    return read_output(study, name, slice(0, independent_drops(study)))
 
 
 def on_grid(study: Study, name: str) -> NDArray[Any]:

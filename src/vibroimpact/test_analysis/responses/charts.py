@@ -104,11 +104,10 @@ def _responses(correlation: ResponseCorrelation) -> Chart:
                 )
             )
     place = visible(correlation.reference)
-    of = (
-        f"of the motion at {place} to forces at the sensors"
-        if correlation.reciprocal
-        else f"to a force at {place}"
-    )
+    if correlation.reciprocal:
+        of = f"of the motion at {place} to forces at the sensors"
+    else:
+        of = f"to a force at {place}"
     caption = (
         f"Measured frequency responses {of}, and those of the case. Ticks mark the modes of "
         f"the case.{those_drawn(len(correlation.sensors))}"
