@@ -10,8 +10,9 @@ __all__ = ["main"]
 def main() -> None:
     """Run the command line.
 
-    An interrupt while it is loaded ends the process by the signal: nothing is under way yet, and as
-    an exception it could be lost in a library that is being loaded.
+    An interrupt while the command line is loaded ends the process by the signal: nothing is under
+    way yet, and as an exception it could be lost in a library that is being loaded. Later it raises
+    KeyboardInterrupt, or sets the flag of a study.
     """
     hears_interrupts = signal.getsignal(signal.SIGINT) is signal.default_int_handler
     if hears_interrupts:

@@ -12,7 +12,7 @@ Complex = NDArray[np.complex128]
 Bools = NDArray[np.bool_]
 Integers = NDArray[np.int64]
 
-# of the dimensions that a compiled function is told; an array without them has one
+# with the number of dimensions that compiled functions need: the others have one there
 Vector: TypeAlias = Annotated[Floats, 1]
 Matrix: TypeAlias = Annotated[Floats, 2]
 Cube: TypeAlias = Annotated[Floats, 3]

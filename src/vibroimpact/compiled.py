@@ -73,7 +73,7 @@ def compiled(function: Function) -> Function:
     function : callable
         Its parameters and what it returns are annotated with `float`, `int`, `bool`, `complex`,
         arrays of `vibroimpact.arrays`, named tuples of these, or tuples; `None` for nothing. Arrays
-        have no gaps.
+        are C-contiguous. A named tuple that Python lends is annotated `Lent[...]`.
 
     Examples
     --------

@@ -9,6 +9,7 @@ from typing import Annotated, Any, get_args, get_origin, get_type_hints
 import numpy as np
 from numba import from_dtype, types
 from numba.core.typing.templates import Signature
+from numpy.typing import NDArray
 
 from vibroimpact.compiler.lending import Lent
 
@@ -67,11 +68,11 @@ def signature_of(function: Callable[..., Any]) -> Signature:
     code = function.__code__
     members = []
     for name in ["return", *code.co_varnames[: code.co_argcount]]:
+        if name not in annotations:
+            raise TypeError(f"{function.__qualname__}: {name}: it is not annotated")
         try:
             members.append(type_of(annotations[name]))
-        except KeyError:
-            raise TypeError(f"{function.__qualname__}: {name}: it is not annotated") from None
-        except TypeError as error:
+        except (KeyError, TypeError, ValueError) as error:
             raise TypeError(f"{function.__qualname__}: {name}: {error}") from None
     returned, *parameters = members
     return returned(*parameters)
@@ -84,7 +85,7 @@ def type_of(annotation: Any) -> types.Type:
         return _SCALARS[annotation]
     if get_origin(annotation) is tuple:
         return types.Tuple([type_of(member) for member in get_args(annotation)])
-    if get_origin(annotation) is np.ndarray:
+    if get_origin(annotation) in (np.ndarray, NDArray):
         return _array(annotation, dimensions=1)
     if get_origin(annotation) is Annotated:
         described, description = get_args(annotation)
@@ -98,8 +99,9 @@ def type_of(annotation: Any) -> types.Type:
 
 def _array(annotation: Any, dimensions: int) -> types.Type:
     """Return the type of an array without gaps; annotation: one of `numpy.typing.NDArray`."""
-    _, data_type = get_args(annotation)
-    (element,) = get_args(data_type)
+    *_, element = get_args(annotation)
+    if get_origin(element) is np.dtype:  # before NumPy 2.5, of which NDArray is an alias by type
+        (element,) = get_args(element)
     return types.Array(from_dtype(np.dtype(element)), dimensions, "C")
 
 

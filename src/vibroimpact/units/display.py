@@ -20,7 +20,10 @@ class Multiple(NamedTuple):
 
 
 STANDARD_GRAVITY = 9.80665
-"""Standard acceleration of gravity [m/s^2], CGPM 1901, in which accelerations are told as well."""
+"""Standard acceleration of gravity [m/s^2], CGPM 1901.
+
+Accelerations are also shown as multiples of it.
+"""
 
 MISSING = "\u2013"
 """Text of a missing value: an en dash."""

@@ -18,7 +18,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 import pytest
@@ -493,6 +493,23 @@ def test_an_annotation_that_names_no_type_is_said(monkeypatch: pytest.MonkeyPatc
         longest(["a"])
     with pytest.raises(TypeError, match=r"doubled: value: .* not annotated"):
         doubled(1.0)
+
+
+@needs_compiler
+def test_arrays_are_known_however_numpy_names_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`NDArray` is an expanded alias before NumPy 2.5, and one of its own from then on."""
+    from numba import types as numba_types
+    from typing_extensions import TypeAliasType
+
+    from vibroimpact.compiler import types
+
+    element = TypeVar("element", bound=np.generic)
+    expanded = np.ndarray[tuple[Any, ...], np.dtype[element]]  # type: ignore[valid-type]
+    named = TypeAliasType("named", expanded, type_params=(element,))  # type: ignore[valid-type,misc]
+    monkeypatch.setattr(types, "NDArray", named)
+    for alias in (named[np.int64], expanded[np.int64]):
+        assert types.type_of(alias) == numba_types.int64[::1]
+        assert types.type_of(Annotated[alias, 2]) == numba_types.int64[:, ::1]
 
 
 # what is said

@@ -599,9 +599,9 @@ def test_ctrl_c_is_never_lost(tmp_path: Path, population: Callable[[int], int]) 
     study = study_file(tmp_path, {**RANDOM, "samples": 2_000_000})  # which would take a minute
     for number in range(0, 24, 24 // population(24)):
         status, told = interrupted_after(0.4 + 0.2 * number, study, tmp_path / f"out{number}")
-        # by the signal itself before the command has begun, with a traceback of the interpreter's
-        # own while that starts
-        assert status in (1, 130, -signal.SIGINT), (number, told)
+        # by the signal itself before the command has begun, on a loaded machine after seconds, with
+        # a traceback of the interpreter's own while that starts
+        assert status in ((1, 130, -signal.SIGINT) if number < 8 else (1, 130)), (number, told)
         assert told.count("Traceback") <= (number < 3), (number, told)
 
 
@@ -637,3 +637,19 @@ def test_all_processes_are_deaf_to_interrupts(tmp_path: Path) -> None:
 
 def _hears_interrupts() -> bool:
     return signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+
+def test_an_error_in_a_batch_is_that_of_no_drop(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As a law of another package may raise what it likes: the drops are computed singly."""
+    from vibroimpact.studies.computation import compute_points
+
+    def fails(problem: vi.Problem) -> None:
+        raise ValueError("no batches")
+
+    monkeypatch.setattr(compute_points, "tabulate", fails)
+    sweep = vi.studies.load_sweep(study_file(tmp_path, {**RANDOM, "samples": 3}))
+    study = vi.studies.load_study(vi.studies.run_sweep(sweep, tmp_path / "out"))
+    assert not study.failures
+    assert np.isfinite(study.values("max_force_N")).all()

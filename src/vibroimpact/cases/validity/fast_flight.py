@@ -13,8 +13,6 @@ from vibroimpact.cases.limits.limit import Limit
 from vibroimpact.dynamics.core.fall import HIGHEST_REYNOLDS
 from vibroimpact.dynamics.fluids.air import SPEED_OF_SOUND
 
-"""Speed of sound in air at 20 C [m/s]."""
-
 
 def _reynolds(drops: Conditions) -> Array:
     medium = _medium(drops)

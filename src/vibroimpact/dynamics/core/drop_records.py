@@ -46,8 +46,8 @@ RUBBED, MICROSLIP = range(2)
 FIRST_FURTHER = 15
 COLUMNS = FIRST_FURTHER + 6
 OBLIQUE_COLUMNS = COLUMNS + 19
-"""Numbers of an impact: those of its table, with further ones, with those of the motion along the
-plate.
+"""How many numbers an impact has: those of its table; with further ones; with those of the motion
+along the plate.
 """
 
 (
@@ -175,8 +175,8 @@ class ObliqueDrops(NamedTuple):
 
 class FreeFall(NamedTuple):
     """A flight above a plate: start, top and next touch [s], and the speed of that [m/s]; times are
-    infinite if they do not come. speed: NaN where bodies vibrate, the plate moves, or the flight is
-    made outside the core. is_beside: is the centre beside the plate at the touch?
+    infinite if they do not come. speed: NaN where bodies vibrate, and in flights of a single drop
+    that Python makes (`ToldFlights`). is_beside: is the centre beside the plate at the touch?
     """
 
     start: float

@@ -338,5 +338,5 @@ class Bases(NamedTuple):
 
     @property
     def is_constant(self) -> bool:
-        """Whether there is one for all drops: it depends on a power of time alone."""
+        """True: it depends on the power of time alone, so that all drops share one."""
         return True

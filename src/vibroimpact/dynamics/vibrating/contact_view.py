@@ -119,7 +119,7 @@ class ContactView:
     def bodies_without_load(self) -> Bodies:
         """The same without gravity and gaps, for the difference of two motions.
 
-        There are no directions of friction.
+        It is that of a drop without friction: one with friction has no sensitivity.
         """
         bodies = self.bodies
         load = np.zeros_like(bodies.system.load)

@@ -170,7 +170,7 @@ def _compute_group(chunk: _Chunk, drops: Drops) -> Iterator[_DropResults]:
     try:
         problem = rigid_problem(with_arrays(case, arrays))
         table = tabulate(problem)
-    except InputError:  # caused by one of them: compute all singly, so that only that one fails
+    except Exception:  # of one of them, or of a law of another package: only that one shall fail
         for drop in drops:
             yield _compute_alone(chunk, drop)
         return
