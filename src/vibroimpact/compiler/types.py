@@ -98,9 +98,9 @@ def type_of(annotation: Any) -> types.Type:
 
 
 def _array(annotation: Any, dimensions: int) -> types.Type:
-    """Return the type of an array without gaps; annotation: one of `numpy.typing.NDArray`."""
+    """Return the type of a C-contiguous array, from an annotation by `numpy.typing.NDArray`."""
     *_, element = get_args(annotation)
-    if get_origin(element) is np.dtype:  # before NumPy 2.5, of which NDArray is an alias by type
+    if get_origin(element) is np.dtype:  # NumPy before 2.5 expands its alias
         (element,) = get_args(element)
     return types.Array(from_dtype(np.dtype(element)), dimensions, "C")
 
