@@ -156,7 +156,7 @@ class ContactManner(NamedTuple):
 class ContactRoom(NamedTuple):
     """Room in which contacts are solved one after the other.
 
-    nodes (17, M): of a collocated segment. steps: none, which are counted only. series (7,): a
+    nodes (19, M): of a collocated segment. steps: none, which are counted only. series (7,): a
     compliance in series that is none.
     """
 

@@ -152,7 +152,7 @@ def write_segment(
     stopped : float
         The impulse of the force in it by the speeds at its ends [N s], which are more exact than
         its nodes.
-    solved : array, shape (17, M)
+    solved : array, shape (19, M)
         The room in which it was solved.
     """
     room = grid.room

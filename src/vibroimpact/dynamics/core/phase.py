@@ -32,6 +32,7 @@ from vibroimpact.dynamics.core.phase_records import (
     BY_SQUARE,
     CHANGE,
     DEFECT,
+    DELTA,
     FACTOR,
     FALL,
     GROWTH,
@@ -45,6 +46,7 @@ from vibroimpact.dynamics.core.phase_records import (
     SHAPE,
     SHRUNK,
     SLOPE,
+    SPEED,
     SQUARE,
     STATIC,
     SUMMAND,
@@ -63,7 +65,34 @@ _DOUBT = 2.0  # times as much as it seems may be left of it
 _SHORTER, _LONGER = -0.5, 0.35  # bounds of the change of the logarithm of a length in one sweep
 _LEAST = 1e-3  # of the square of the approach speed: starting value of u
 _LEAST_OF_BEFORE = 0.1  # of u, in one sweep
+_MOST_DAMPED = 3.0  # bound of p, below the radius of convergence 2 sqrt(pi) of its series
+_SMALL_DAMPING = 1e-3  # below it the logarithm loses digits
+_LARGEST_LOSS = -0.9  # of the static force; beyond it the logarithm is of no use
 _OF_WORK = 0.05  # of the tolerance: error of the static work
+
+
+@compiled
+def undamped_square(damping: float, relative_speed: float) -> float:
+    r"""Return the square that a relative speed x would have without damping:
+    :math:`2 (D x - \ln(1 + D x))/D^2`.
+    """
+    by_damping = damping * relative_speed
+    if abs(by_damping) < _SMALL_DAMPING or by_damping <= _LARGEST_LOSS:
+        return relative_speed * relative_speed / (1.0 + 2.0 / 3.0 * by_damping)
+    return 2.0 * (by_damping - math.log1p(by_damping)) / (damping * damping)
+
+
+@compiled
+def damped_speed(damping: float, undamped: float) -> float:
+    r"""Return the relative speed x whose `undamped_square` this is, nearly.
+
+    Since :math:`1 + D x = -W(-e^{-1 - p^2/2})` with Lambert's W and p, D times the speed without
+    damping, x is a series in p about the branch point (Corless et al. 1996, eq. 4.22).
+    """
+    speed = math.sqrt(undamped)
+    p = min(max(damping * speed, -_MOST_DAMPED), _MOST_DAMPED)
+    series = 1.0 / 36.0 + p * (-1.0 / 270.0 + p * (1.0 / 4320.0 + p * (1.0 / 17010.0)))
+    return speed * (1.0 + p * (1.0 / 3.0 + p * series))
 
 
 @compiled
@@ -73,10 +102,10 @@ def start_phase(
     r"""Write starting values of u, and return the length [m], the powers of the indentation with
     which both forces grow, and the potential at the shallow end [J].
 
-    Under a force :math:`F_s (1 + D\, \dot\delta/v)`, with the approach speed v, the square of the
-    speed x v changes nearly as the static
-    work over :math:`1 + \tfrac23 D x`, which is solved for x; D is taken from the forces in the
-    middle of the segment.
+    Under a force :math:`F_s (1 + D\, \dot\delta/v)`, with the approach speed v, the equation of
+    motion is separable: the static work since the speed x v was zero is
+    :math:`m v^2 (D x - \ln(1 + D x))/D^2` (`undamped_square`), which is solved for x. D is taken
+    from the forces in the middle of the segment.
     """
     force = force_at(line.force)
     energies = energies_at(line.energies)
@@ -90,13 +119,15 @@ def start_phase(
     touch = speed * speed
     middle_rate = 0.7 * sign * speed
     static, loss = force(shallow + 0.5 * span, middle_rate, speed, coefficients)
-    damping = max(loss / static * (sign / 1.05), 0.0)
+    damping = 0.0
+    if static > weight and loss * sign > 0.0:
+        damping = loss / (0.7 * (static - weight))
     elastic, plastic = energies(shallow, coefficients)
     low = elastic + plastic - weight * shallow
     elastic, plastic = energies(shallow + span, coefficients)
     high = elastic + plastic - weight * (shallow + span)
     known = math.sqrt(max(segment.begun, segment.wanted)) / speed
-    begun = known * known / (1.0 + sign * damping * known)
+    begun = undamped_square(damping, known)
     by_work = 2.0 / (line.mass * touch)
     static_power = 0.0
     loss_power = 0.0
@@ -105,9 +136,10 @@ def start_phase(
         static_power = 21.0 * (static_deeper - static) / (static_deeper + static)
         if loss > 0.0:
             loss_power = 21.0 * (loss_deeper - loss) / (loss_deeper + loss)
-        span *= (begun / (by_work * (high - low))) ** (1.0 / (1.0 + max(static_power, 0.0)))
-        elastic, plastic = energies(shallow + span, coefficients)
-        high = elastic + plastic - weight * (shallow + span)
+        for _ in range(2):  # of powers, of which static forces mostly are sums
+            span *= (begun / (by_work * (high - low))) ** (1.0 / (1.0 + max(static_power, 0.0)))
+            elastic, plastic = energies(shallow + span, coefficients)
+            high = elastic + plastic - weight * (shallow + span)
         by_work = begun / (high - low)
         begun = 0.0
     elif sign > 0.0:
@@ -120,10 +152,9 @@ def start_phase(
         room[SQUARE, node] = elastic + plastic - weight * delta
     for node in range(width):
         undamped = max(begun + by_work * (high - room[SQUARE, node]), 0.0)
-        damped = sign * damping * undamped
-        damped += math.sqrt(damped * damped + 4.0 * undamped)
-        per_factor = vectors[vector, PER_FACTOR, node]
-        room[SQUARE, node] = touch * max(0.25 * damped * damped * (per_factor * per_factor), _LEAST)
+        relative_speed = damped_speed(damping, undamped)
+        per_speed = vectors[vector, PER_FACTOR, node] * relative_speed
+        room[SQUARE, node] = touch * max(per_speed * per_speed, _LEAST)
     return span, static_power, loss_power, low
 
 
@@ -158,7 +189,7 @@ def solve_phase(
     sharper : float
         Times as small those of G have to be, on which the motion between the nodes depends, while a
         larger number of nodes is left.
-    room : array, shape (17, M)
+    room : array, shape (19, M)
         Room; the motion stays in it.
     """
     force = force_at(line.force)
@@ -185,7 +216,7 @@ def solve_phase(
     matrix = 2 * segment.kind
     count = rules.counts[0]
     width = (count + 8) // 8 * 8
-    for row in (STATIC, LOSS, RATE, DEFECT, BY_SQUARE, SUMMAND, SLOPE, BY_LENGTH, BY_DEPTH):
+    for row in (STATIC, LOSS, DEFECT):
         for node in range(count, width):
             room[row, node] = 0.0
     before = 0.0
@@ -199,17 +230,20 @@ def solve_phase(
     high = low
     is_lossy = False
     for _ in range(len(rules.counts) * _SWEEPS):
+        # only the force is not computed in vectors of eight
+        for node in range(width):
+            room[SLOPE, node] = span * vectors[vector, FALL, node]
+            room[DELTA, node] = shallow + span * vectors[vector, SHAPE, node]
+            room[SPEED, node] = sign * vectors[vector, FACTOR, node] * math.sqrt(room[SQUARE, node])
         for node in range(count):
-            square = room[SQUARE, node]
-            slope = span * vectors[vector, FALL, node]
-            rate = sign * vectors[vector, FACTOR, node] * math.sqrt(square)
-            static, loss = force(
-                shallow + span * vectors[vector, SHAPE, node], rate, speed, coefficients
-            )
-            by_square = -per_mass * loss * slope / square
+            static, loss = force(room[DELTA, node], room[SPEED, node], speed, coefficients)
             room[STATIC, node] = static
             room[LOSS, node] = loss
-            room[SLOPE, node] = slope
+        for node in range(width):
+            static = room[STATIC, node]
+            loss = room[LOSS, node]
+            slope = room[SLOPE, node]
+            by_square = -per_mass * loss * slope / room[SQUARE, node]
             room[RATE, node] = (gravity - 2.0 * per_mass * (static + loss)) * slope
             room[BY_SQUARE, node] = by_square
             room[SUMMAND, node] = by_square * vectors[vector, PER_FACTOR, node]
@@ -314,7 +348,7 @@ def solve_phase(
         multiply_row(room, SQUARE, rules.onward, rule, width, width, SUMMAND)
         for node in range(width):
             room[SQUARE, node] = room[SUMMAND, node] if node < count else at_end
-        for row in (STATIC, LOSS, RATE, DEFECT, BY_SQUARE, SUMMAND, SLOPE, BY_LENGTH, BY_DEPTH):
+        for row in (STATIC, LOSS, DEFECT):
             for node in range(count, width):
                 room[row, node] = 0.0
         before = 0.0

@@ -311,7 +311,7 @@ def collocate_contact(
         The Gauss rules.
     grid : NormalGrid
         Where its normal motion is written, if that is asked for.
-    room : array, shape (17, M)
+    room : array, shape (19, M)
         Room.
     """
     grid.points[0] = 0

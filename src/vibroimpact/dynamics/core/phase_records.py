@@ -41,15 +41,17 @@ VECTORS = 9
     BY_DEPTH,
     BY_LENGTH,
     SUMMAND,
-) = range(14)
+    DELTA,
+    SPEED,
+) = range(16)
 """Vectors of the solution, rows of its room: static and dissipative force, G, the slope of the
-indentation by y over f, u, and others of Newton's method.
+indentation by y over f, u, others of Newton's method, the indentation and its rate.
 """
 
-PACE, ELAPSED, SHARE = 14, 15, 16
+PACE, ELAPSED, SHARE = 16, 17, 18
 """Further ones: pace dt/dy, time since the start, and weights of interpolation."""
 
-ROWS = 17
+ROWS = 19
 
 
 class PhaseRules(NamedTuple):
