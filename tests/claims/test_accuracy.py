@@ -193,7 +193,7 @@ def test_what_is_said_of_other_assumptions() -> None:
     says(TRUST, "loss of speed below {} %", 100.0 * threshold["air_drag"])
     says(
         TRUST,
-        "above {} %, or below one and a half periods, it raises a doubt",
+        "above {} %, or below one and a half periods, it gives a warning",
         100.0 * modes_left_out._TRUNCATED,
     )
     assert modes_left_out._CYCLES == 1.5

@@ -66,7 +66,7 @@ def test_defaults_of_the_drop(tmp_path: Path, blocks: list[str]) -> None:
     says(PAGE, "but at least {} of the first approach speed", float(bounced.rest.speed[0]) / 2.0)
     says(
         PAGE,
-        "with a [doubt](limits.md) from {} % beyond them on",
+        "with a [warning](limits.md) from {} % beyond them on",
         100.0 * (limits()["speeds_given"].threshold - 1.0),
     )
     air, water = vi.Air(), vi.Liquid()
@@ -204,8 +204,8 @@ def test_doubts_about_units(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """The page shows the doubt as the case of its beginning gives it, with one value changed."""
-    told = re.findall(r"^Doubt: (.+)$", (ROOT / PAGE).read_text(encoding="utf-8"), re.M)
+    """The page shows the warning as the case of its beginning gives it, with one value changed."""
+    told = re.findall(r"^Warning: (.+)$", (ROOT / PAGE).read_text(encoding="utf-8"), re.M)
     ((key, value),) = changes.items()
     (tmp_path / "case.toml").write_text(blocks[0], encoding="utf-8")
     monkeypatch.setattr(

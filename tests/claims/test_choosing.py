@@ -79,7 +79,7 @@ def test_numbers_of_modes() -> None:
     says(PAGE, "| 10 | {} | {} | {} % |", *row(10))
     says(PAGE, "| 40 | {} | {} | {} % |", *row(40))
     says(PAGE, "| 150 | {} | {} | {} % |", *row(150))
-    says(PAGE, "raises a doubt above {} %", 100 * _TRUNCATED)
+    says(PAGE, "gives a warning above {} %", 100 * _TRUNCATED)
 
 
 def test_steel_yields_early() -> None:

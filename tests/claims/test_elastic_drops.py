@@ -209,12 +209,12 @@ def test_thresholds_of_doubts() -> None:
     says(PAGE, "or if the estimate exceeds {} %", 100.0 * modes_left_out._TRUNCATED)
     says(
         PAGE,
-        "right within a third. Above {} % a doubt is raised",
+        "right within a third. Above {} % a warning is given",
         100.0 * plate_waves.LIMITS[0].threshold,
     )
     says(
         PAGE,
-        "Above {} % a doubt is raised, with a smaller element size",
+        "Above {} % a warning is given, with a smaller element size",
         100.0 * plate_mesh.LIMITS[0].threshold,
     )
     says(PAGE, "(more than {} % of the rms value", 100.0 * sensor_doubts._DOUBTED_ERROR)

@@ -67,7 +67,7 @@ def test_thicknesses() -> None:
     )
     says(
         PAGE,
-        "may change the force by {} %; above {} % it raises a doubt",
+        "may change the force by {} %; above {} % it gives a warning",
         100 * thin.truncation["plate"],
         100 * _TRUNCATED,
     )

@@ -12,7 +12,7 @@ from support import plain_case
 from vibroimpact.cases import sensor_doubts
 from vibroimpact.cases.elastic import modes
 from vibroimpact.cases.limits.limit import limits
-from vibroimpact.cases.validity import edge, modes_left_out
+from vibroimpact.cases.validity import edge, modes_left_out, strength
 from vibroimpact.cases.validity.adhesion import WORK_OF_ADHESION
 from vibroimpact.cases.validity.finite_sphere import force_lacking
 from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE
@@ -49,6 +49,7 @@ def test_thresholds() -> None:
         threshold("speeds_given"),
     )
     says(PAGE, "over the tensile strength | above {} |", threshold("sphere_strength"))
+    says(PAGE, "plastic flow at {} times the yield strength", strength._FULLY_PLASTIC)
     says(PAGE, "(Clift and Gauvin 1970; {} kg/m^3)", AIR_DENSITY)
     says(PAGE, "| above {} % | the loss, and the speed with drag", threshold("air_drag", 100.0))
     says(PAGE, "which `drop.air` leaves out | above {} %", threshold("air_buoyancy", 100.0))
@@ -114,7 +115,7 @@ def test_thresholds() -> None:
     )
     says(
         PAGE,
-        "Beyond a/R = {} the term is extrapolated; beyond {} a doubt",
+        "Beyond a/R = {} the term is extrapolated; beyond {} a warning",
         FITTED[1],
         threshold("small_contact"),
     )

@@ -223,7 +223,7 @@ def test_flights_in_air() -> None:
     says(PAGE, "and the result is {}.", in_air)
     says(
         PAGE,
-        "a doubt states the largest change of a restitution if it exceeds {} %",
+        "a warning states the largest change of a restitution if it exceeds {} %",
         100.0 * _MATTERS,
     )
     says(PAGE, "drag (air of {} kg/m³", float(vi.Air().density))

@@ -39,6 +39,6 @@ def test_defaults() -> None:
 def test_power_that_needs_a_baffle() -> None:
     says(
         PAGE,
-        "A doubt is raised if more than {} % of the power lies below the former frequency",
+        "A warning is given if more than {} % of the power lies below the former frequency",
         100.0 * _DOUBTED_SHARE,
     )

@@ -84,7 +84,7 @@ def test_what_yielding_does() -> None:
 
 def test_the_plate_yields() -> None:
     for speed, words in (
-        (1.0, "1.44 GPa, 3.8 times that at which"),
+        (1.0, "1.44 GPa is 3.8 times that at which"),
         (0.3, "2.4 times that at which"),
     ):
         case = vi.load_case(

@@ -44,7 +44,7 @@ def test_doubts_of_a_study(tmp_path: Path) -> None:
     study = vi.studies.load_study(
         vi.studies.run_sweep(vi.studies.load_sweep("paper:sweep"), tmp_path / "sizes")
     )
-    (shown,) = re.findall(r"^Doubt: (.+)\.$", (ROOT / STUDIES).read_text(encoding="utf-8"), re.M)
+    (shown,) = re.findall(r"^Warning: (.+)\.$", (ROOT / STUDIES).read_text(encoding="utf-8"), re.M)
     assert shown in [doubt.replace("\N{NO-BREAK SPACE}", " ") for doubt in doubt_sentences(study)]
 
 

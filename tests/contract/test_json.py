@@ -363,16 +363,13 @@ def test_doubts_are_those_of_the_run(printed: Printed) -> None:
     )
     calibrated = printed("calibrate", "ball.toml", "-o", "ball")["doubts"]
     run = printed("run", "ball/case.toml", "-o", "run")["doubts"]
-    assert sum("yields under Hertz's peak pressure" in doubt for doubt in run) == 2
+    assert sum("the plate (steel) yields, and so does" in doubt for doubt in run) == 1
     assert calibrated[: len(run)] == run
     for folder in ("ball", "run"):
         assert printed("export", folder, "--to", "adams")["doubts"] == run
         assert printed("export", folder, "--to", "lammps")["doubts"] == run
-    assert all(
-        html.escape(doubt).replace("&#x27;", "&#39;")
-        in Path("ball/report.html").read_text(encoding="utf-8")
-        for doubt in run
-    )
+    page = html.unescape(Path("ball/report.html").read_text(encoding="utf-8"))
+    assert all(doubt in page for doubt in run)
 
 
 def test_exports_name_their_files(printed: Printed) -> None:

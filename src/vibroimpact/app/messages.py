@@ -26,7 +26,7 @@ the `number` asked:
     what is being computed, and the part that is done;
 `state`
     charts, the plate in motion, tables, the resolved case, the case as TOML; in full detail also
-    doubts and signals;
+    warnings and signals;
 `files`
     each a name, a kind and a text;
 `fault`

@@ -15,7 +15,9 @@ from vibroimpact.cases.reader import case_of
 from vibroimpact.charts.made import drawn, made_charts
 from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.report.result_warning import size_of
 from vibroimpact.results.result import Result, result_of
+from vibroimpact.runs.answer import answer_of, answer_of_impacts
 from vibroimpact.runs.charts import chart_makers
 from vibroimpact.runs.scene import rigid_scene, scene_of
 from vibroimpact.runs.tables import impact_table, ledger_table
@@ -77,6 +79,11 @@ def state_of(
     return State(result, _document(result, table, detail, looked_at))
 
 
+def _warnings(result: Result) -> list[dict[str, str]]:
+    """Return the warnings with the sizes of their effects."""
+    return [{"text": str(warning), "size": size_of(warning)} for warning in result.doubts]
+
+
 def _document(
     result: Result, table: dict[str, Any], detail: Detail, looked_at: Collection[str] | None
 ) -> dict[str, Any]:
@@ -90,7 +97,17 @@ def _document(
     return {
         "name": result.name,
         "status": result.status,
-        "doubts": result.doubts if is_full else [],
+        "answer": [
+            {
+                "name": quantity.name,
+                "text": quantity.text,
+                "error": quantity.error_text,
+                "note": quantity.note,
+            }
+            # the signals of a draft are computed where they are looked at
+            for quantity in (answer_of(result) if is_full else answer_of_impacts(result))
+        ],
+        "warnings": _warnings(result) if is_full else [],
         "impacts": _impacts(result),
         "ledger": _ledger(result),
         "charts": [drawn(chart, plotly_chart) for chart in made_charts(makers_looked_at)],

@@ -14,6 +14,7 @@ import numpy as np
 from vibroimpact.cases.limits.limit import in_kilohertz, two_digits
 from vibroimpact.dynamics.sensors.instruments.electronics import Converter
 from vibroimpact.dynamics.sensors.recording import Signal
+from vibroimpact.report.result_warning import ResultWarning
 from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.units.display import text
 
@@ -54,7 +55,7 @@ def sensor_doubts(
     []
     """
     tables = {table["name"]: table for table in case.get("sensors", ())}
-    sentences = []
+    sentences: list[str] = []
     for name, signal in signals.items():
         accelerometer = tables.get(name, {}).get("accelerometer", {})
         sentences += _range_doubts(signal, accelerometer.get("range"))
@@ -95,7 +96,7 @@ def sensor_doubts(
     ]
 
 
-def _error_sentence(cause: str, remedy: str, errors: Mapping[str, float]) -> str:
+def _error_sentence(cause: str, remedy: str, errors: Mapping[str, float]) -> ResultWarning:
     """Return the sentence for sensors with the same cause and remedy.
 
     `errors` are relative errors by the names of the sensors.
@@ -104,9 +105,10 @@ def _error_sentence(cause: str, remedy: str, errors: Mapping[str, float]) -> str
     names = ", ".join(f'"{name}"' for name in errors)
     sensors = "sensors" if len(errors) > 1 else "sensor"
     signals = "their signals" if len(errors) > 1 else "its signal"
-    return (
+    return ResultWarning(
         f"{sensors} {names}: {cause} may change {signals} by about {' and '.join(different)} of "
-        f"the rms value; {remedy}"
+        f"the rms value; {remedy}",
+        max(errors.values()),
     )
 
 
@@ -122,10 +124,13 @@ def _range_doubts(signal: Signal, largest: float | None) -> list[str]:
     if not recommended >= signal.peak:  # as it may be once rounded to a digit
         recommended = 2.0 * recommended
     return [
-        f'the accelerometer of sensor "{signal.sensor.name}" is overloaded beyond {limit} '
-        f"for {text(signal.overload_time, 's', 2)} in all, with up to "
-        f"{signal.peak:.4g} m/s2: the signal is clipped there, and wrong around it; take "
-        f"one with a range of {recommended:g} m/s2 or so"
+        ResultWarning(
+            f'the accelerometer of sensor "{signal.sensor.name}" is overloaded beyond {limit} '
+            f"for {text(signal.overload_time, 's', 2)} in all, with up to "
+            f"{signal.peak:.4g} m/s2: the signal is clipped there, and wrong around it; take "
+            f"one with a range of {recommended:g} m/s2 or so",
+            math.nan if largest is None else signal.peak / largest - 1.0,
+        )
     ]
 
 
@@ -140,15 +145,21 @@ def _converter_doubts(signal: Signal, table: Mapping[str, Any]) -> list[str]:
     clipped = int(np.count_nonzero(is_clipped))
     if clipped:
         return [
-            f'the converter of sensor "{name}" clips {clipped} of {len(signal.value)} samples at '
-            f"its range of {text(converter.range, unit)}; give it "
-            "a wider one, or the amplifier less gain"
+            ResultWarning(
+                f'the converter of sensor "{name}" clips {clipped} of {len(signal.value)} samples '
+                f"at its range of {text(converter.range, unit)}; give it "
+                "a wider one, or the amplifier less gain",
+                clipped / len(signal.value),
+            )
         ]
     if converter.step and not signal.value.any():
         return [
-            f'the converter of sensor "{name}" reads zero all along: each sample is below '
-            f"half its step, {text(converter.step, unit)}; give it "
-            "more bits, or the amplifier gain"
+            ResultWarning(
+                f'the converter of sensor "{name}" reads zero all along: each sample is below '
+                f"half its step, {text(converter.step, unit)}; give it "
+                "more bits, or the amplifier gain",
+                1.0,
+            )
         ]
     return []
 
@@ -169,11 +180,14 @@ def _baffle_doubts(case: ResolvedCase, signal: Signal, speed_of_sound: float) ->
     if share < _DOUBTED_SHARE:
         return []
     return [
-        f"{two_digits(100.0 * share)} % of the power of the signal of microphone "
-        f'"{signal.sensor.name}" lies below {text(lowest, "Hz")}, '
-        "where half a wavelength is longer than the plate "
-        "is wide: the plate is assumed to lie in a rigid baffle, and without one its two "
-        "sides cancel there; use the signal above that frequency only"
+        ResultWarning(
+            f"{two_digits(100.0 * share)} % of the power of the signal of microphone "
+            f'"{signal.sensor.name}" lies below {text(lowest, "Hz")}, '
+            "where half a wavelength is longer than the plate "
+            "is wide: the plate is assumed to lie in a rigid baffle, and without one its two "
+            "sides cancel there; use the signal above that frequency only",
+            share,
+        )
     ]
 
 

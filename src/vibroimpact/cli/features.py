@@ -199,11 +199,11 @@ def _records_without_baseline(paths: list[Path], columns: str | None) -> Iterato
         for record in map(without_baseline, load_records(path, columns)):
             for doubt in record.named_doubts:
                 if doubt not in doubts and len(doubts) < _MOST_DOUBTS:
-                    note(f"doubt: {doubt}")
+                    note(f"warning: {doubt}")
                 doubts.add(doubt)
             yield record
     if len(doubts) > _MOST_DOUBTS:
         note(
-            f"doubt: there are {len(doubts) - _MOST_DOUBTS:,} further doubts about records; "
+            f"warning: there are {len(doubts) - _MOST_DOUBTS:,} further warnings about records; "
             "offset and drift of a table (-o) are what was removed"
         )

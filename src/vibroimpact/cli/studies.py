@@ -233,7 +233,7 @@ def _run_sweep(
         _check_labelled(study, sweep)
     _check_confirmed(study, sweep, yes=yes or (resume and has_study(target)))
     for doubt in sweep_slips(sweep):
-        note(f"doubt: {doubt}")  # before the computation, not only in the report
+        note(f"warning: {doubt}")  # before the computation, not only in the report
     with (
         patient_progress("computing modes", screen) as modes,
         counting_progress("drops", screen) as count,

@@ -35,12 +35,12 @@ def html_summary(report: Report) -> str:
     --------
     >>> print(html_summary(Report("Two balls", (), {}, warnings=("they may break",))))
     <p><strong>Two balls</strong><br></p>
-    <p>Doubt: they may break.</p>
+    <p>Warning: they may break.</p>
     """
     # the first section that is more than a picture of the set-up
     main = next((section for section in report.sections if section.medium != "page"), None)
     blocks = [] if main is None else [_html_block(block) for block in main.blocks]
-    warnings = [Markup("<p>Doubt: {}.</p>").format(visible(text)) for text in report.all_warnings]
+    warnings = [Markup("<p>Warning: {}.</p>").format(visible(text)) for text in report.all_warnings]
     return _joined([_head(report), *blocks, *warnings])
 
 

@@ -25,6 +25,7 @@ from vibroimpact.charts.palette import DIVERGING, DIVERGING_ON_DARK, GRID, GROUN
 from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import write_into
+from vibroimpact.report.result_warning import size_of
 
 _CHARTS = "vibroimpact.charts"
 _QUICK = 1
@@ -97,6 +98,7 @@ def template(package: str) -> Template:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["size_of"] = size_of
     return environment.get_template("page.html.j2")
 
 

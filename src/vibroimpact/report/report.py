@@ -5,6 +5,7 @@ A task has a module `report` with a function `report_of`, which returns the `Rep
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,6 +13,7 @@ from typing import Any, ClassVar, Literal
 
 from vibroimpact._version import __version__
 from vibroimpact.charts.chart import Chart
+from vibroimpact.units.display import multiple, text
 
 
 @dataclass(frozen=True)
@@ -264,6 +266,75 @@ class Code:
 Block = Table | Facts | Paragraph | Heading | Note | Explanation | Warnings | Figure | Scene | Code
 
 
+_EXACT = 1e-6
+"""Relative error below which a result is as exact as it is shown."""
+
+_FIGURES = 5
+_LEAST_FIGURES = 2
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A main result of a finding, with its error.
+
+    Parameters
+    ----------
+    name : str
+        What it is.
+    value : float
+        Its value in SI.
+    unit : str
+        Its SI unit; empty for a ratio.
+    error : float, default NaN
+        Its estimated relative error; NaN if it is not estimated.
+    note : str
+        What else is said of it, such as its impact, or the value in another unit.
+    is_least : bool
+        Whether the error may be larger.
+    """
+
+    name: str
+    value: float
+    unit: str = ""
+    error: float = math.nan
+    note: str = ""
+    is_least: bool = False
+
+    @property
+    def text(self) -> str:
+        """The value with its unit, in the digits that its error leaves."""
+        figures = _FIGURES
+        if self.error > _EXACT:
+            # the last one may be off by five
+            figures = math.floor(1.3 - math.log10(self.error))
+        figures = min(max(figures, _LEAST_FIGURES), _FIGURES)
+        rounded = float(f"{self.value:.{figures - 1}e}")
+        # zeros ahead of the decimal point are shown: the error tells that they are not certain
+        scaled = abs(rounded) / multiple(self.unit, rounded).size
+        return text(rounded, self.unit, max(figures, len(f"{scaled:.0f}")))
+
+    @property
+    def error_text(self) -> str:
+        """The error in per cent; empty if there is none, or none is known."""
+        if not self.error > _EXACT:
+            return ""
+        bound = "± {} % or more" if self.is_least else "± {} %"
+        return bound.format(f"{float(f'{100.0 * self.error:.2g}'):g}")
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The result as data for JSON."""
+        error = self.error if math.isfinite(self.error) else None
+        return {
+            "name": self.name,
+            "value": self.value,
+            "unit": self.unit,
+            "relative_error": error,
+            "error_may_be_larger": self.is_least,
+            "text": self.text.replace("\u00a0", " "),
+        }
+
+
 @dataclass(frozen=True)
 class Section:
     """A part of a report under a heading.
@@ -305,7 +376,7 @@ class Report:
     sections : sequence of Section
         Tables with their notes.
     summary : mapping
-        Content of `summary.json` in the folder; in SI.
+        Content of `summary.json` in the folder, after the main results; in SI.
     charts : sequence of Chart
         The charts that follow the sections.
     main_chart : str
@@ -320,6 +391,8 @@ class Report:
         Those of them whose checksums `summary.json` records.
     answer : str
         The finding in a sentence.
+    quantities : sequence of Quantity
+        The main results, which page and terminal show first.
     has_failed : bool
         Whether the answer is that there is no result.
     sentences : sequence of str
@@ -352,6 +425,7 @@ class Report:
     files: Mapping[str, Callable[[Path], object]] = field(default_factory=dict)
     checked_files: Sequence[str] = ()
     answer: str = ""
+    quantities: Sequence[Quantity] = ()
     has_failed: bool = False
     sentences: Sequence[str] = ()
     warnings: Sequence[str] = ()
@@ -364,8 +438,19 @@ class Report:
 
     @property
     def document(self) -> dict[str, Any]:
-        """What `--json` prints."""
-        return dict(self.summary if self.data is None else self.data)
+        """What `--json` prints: the main results first."""
+        return self._after_answer(self.summary if self.data is None else self.data)
+
+    @property
+    def stored_summary(self) -> dict[str, Any]:
+        """The content of `summary.json`: the main results first."""
+        return self._after_answer(self.summary)
+
+    def _after_answer(self, data: Mapping[str, Any]) -> dict[str, Any]:
+        """Return data with the main results ahead, if there are any."""
+        if not self.quantities:
+            return dict(data)
+        return {"answer": [quantity.document for quantity in self.quantities], **data}
 
     @property
     def page_charts(self) -> tuple[Chart, ...]:

@@ -80,7 +80,7 @@ def fill_folder(
         Called with the part of the figures that is written, up to 1.
     """
     write_report(report, folder)
-    write_summary(report.summary, folder, report.checked_files)
+    write_summary(report.stored_summary, folder, report.checked_files)
     if figures:
         (folder / FIGURES).mkdir()
         write_figures(report, folder / FIGURES, figures, progress)

@@ -19,10 +19,12 @@ from vibroimpact.report.report import (
     Heading,
     Note,
     Paragraph,
+    Quantity,
     Report,
     Section,
     Table,
 )
+from vibroimpact.report.result_warning import size_of
 from vibroimpact.report.terminal_table import (
     TerminalColumn,
     TerminalTable,
@@ -57,15 +59,27 @@ def terminal_report(report: Report) -> RenderableType:
     if report.answer:
         lines.append(Text(report.answer))
     lines.extend(Text(sentence) for sentence in report.sentences)
+    if report.quantities:
+        lines.append(facts([_quantity_cells(row) for row in report.quantities], indent=1))
+    warnings = report.all_warnings
+    if report.quantities:
+        # beside the answer, the worst one; the others follow at the end
+        lines.extend(warning_lines(warnings[:1]))
+        warnings = warnings[1:]
     sections = [section for section in report.sections if section.medium != "page"]
     shown = [(section, blocks) for section in sections if (blocks := list(_section_lines(section)))]
     for number, (section, blocks) in enumerate(shown):
         lines.extend(_heading_lines(section, is_first=number == 0))
         lines.extend(blocks)
-    lines.extend(warning_lines(report.all_warnings))
+    lines.extend(warning_lines(warnings))
     if report.all_warnings and report.warnings_note:
         lines.append(Text(report.warnings_note, style="dim"))
     return Group(*lines)
+
+
+def _quantity_cells(quantity: Quantity) -> tuple[str, ...]:
+    """Return name, value, error and note of a main result."""
+    return quantity.name, quantity.text, quantity.error_text, quantity.note
 
 
 def _heading_lines(section: Section, *, is_first: bool) -> Iterator[Text]:
@@ -155,4 +169,8 @@ def _terminal_columns(columns: Iterable[Column]) -> list[TerminalColumn]:
 
 def warning_lines(warnings: Iterable[str]) -> list[RenderableType]:
     """Return warnings as paragraphs for the terminal, one each."""
-    return [Text(f"Doubt: {warning}.", style="yellow") for warning in warnings]
+    return [Text(f"Warning: {warning}.", style=_STYLES[size_of(warning)]) for warning in warnings]
+
+
+_STYLES = {"large": "bold red", "fair": "yellow", "small": "dim"}
+"""How warnings look, by the size of their effect."""

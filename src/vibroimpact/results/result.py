@@ -7,12 +7,13 @@ import platform
 from collections.abc import Container, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
+from functools import cached_property
 
 import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats
-from vibroimpact.cases.doubts import doubts
+from vibroimpact.cases.doubts import doubts, errors_of
 from vibroimpact.cases.limits.conditions import DropSummary
 from vibroimpact.cases.sensor_doubts import sensor_doubts
 from vibroimpact.cases.validity.plate_mesh import plate_mesh_error
@@ -23,6 +24,7 @@ from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.truncation import time_of_contact
 from vibroimpact.report.html_report import html_summary
 from vibroimpact.report.reported import Reported
+from vibroimpact.report.result_warning import ResultWarning, ranked
 from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.results.deflection import Deflection, deflection_of
 from vibroimpact.results.fine_history import fine_history
@@ -115,7 +117,10 @@ class Result(Reported, reported_in="vibroimpact.runs.report"):
 
     @property
     def doubts(self) -> list[str]:
-        """Sentences that name the assumptions and ranges of validity that the run exceeds."""
+        """Warnings of assumptions and ranges of validity that the run exceeds.
+
+        Those that change most are first.
+        """
         return self.doubts_but()
 
     def doubts_but(self, aside: Container[str] = ()) -> list[str]:
@@ -127,16 +132,36 @@ class Result(Reported, reported_in="vibroimpact.runs.report"):
             Dotted keys whose values are not checked for slips.
         """
         summary = self._drop_summary
-        sentences = doubts(self.case, summary, aside)
-        sentences += str(self.deformation.get("doubts", "")).splitlines()  # about the meshes
         highest_frequency = max(self.frequencies("plate"), default=math.nan)
-        return sentences + sensor_doubts(
+        of_sensors = sensor_doubts(
             self.case,
             self.signals,
             highest_frequency,
             float(summary.duration),
             self._first_contact(),
         )
+        of_drop = doubts(self.case, summary, aside)
+        return ranked([*of_drop, *self._doubts_of_meshes(), *of_sensors])
+
+    def _doubts_of_meshes(self) -> list[str]:
+        """Return the warnings about the meshes of the bodies."""
+        sentences = str(self.deformation.get("doubts", "")).splitlines()
+        # results of earlier versions do not have them
+        effects = str(self.deformation.get("doubt_effects", "")).splitlines()
+        effects += ["nan"] * (len(sentences) - len(effects))
+        return [
+            ResultWarning(sentence, float(effect))
+            for sentence, effect in zip(sentences, effects, strict=True)
+        ]
+
+    @cached_property
+    def relative_errors(self) -> Mapping[str, float]:
+        """Estimated relative errors of results of the first impact, by their names.
+
+        They are what the limits of the theory, modes left out and meshes change; what is not
+        estimated is not in them.
+        """
+        return errors_of(self.case, self._impact_summary)
 
     def _first_contact(self) -> tuple[float, float] | None:
         """Return x and y of the first contact on the plate [m], of a sphere that moves along it."""
@@ -152,6 +177,12 @@ class Result(Reported, reported_in="vibroimpact.runs.report"):
     @property
     def _drop_summary(self) -> DropSummary:
         """The outcomes of the drop that the limits of the theory are checked against."""
+        deflection = float(self.peaks.get("plate", {}).get("max_bending_m") or math.nan)
+        return replace(self._impact_summary, deflection=deflection)
+
+    @property
+    def _impact_summary(self) -> DropSummary:
+        """Those of them that the history of the plate is not needed for."""
         impacts = self.impacts
         if not len(impacts["impact"]):
             return DropSummary()
@@ -164,7 +195,6 @@ class Result(Reported, reported_in="vibroimpact.runs.report"):
             depth=float(impacts["max_indentation_m"].max()),
             duration=time_of_contact(impacts),
             speed=float(impacts["approach_speed_m_s"][0]),
-            deflection=float(self.peaks.get("plate", {}).get("max_bending_m") or math.nan),
             modes=modes,
             changes=self.change_by_impact,
             plate_theory=plate_theory_error(self.deformation, impacts),

@@ -27,7 +27,7 @@ def summary_of(result: Result) -> dict[str, Any]:
         "impacts": impact_rows(result.impacts),
         "energy": result.energy,
         **_of_vibration(result),
-        "doubts": result.doubts,
+        "doubts": list(map(str, result.doubts)),
         "provenance": dict(result.provenance),
     }
 

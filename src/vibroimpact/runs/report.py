@@ -19,12 +19,12 @@ from vibroimpact.report.report import (
     Scene,
     Section,
     Table,
-    Warnings,
     table_of,
 )
 from vibroimpact.results.folder import CHECKED_FILES, result_files
 from vibroimpact.results.result import Result
 from vibroimpact.results.summary import summary_of
+from vibroimpact.runs.answer import answer_of, largest_reading
 from vibroimpact.runs.below import level_below
 from vibroimpact.runs.captions import left_out, scene_caption, sensor_caption, sensors_left_out
 from vibroimpact.runs.charts import run_charts
@@ -60,6 +60,7 @@ def report_of(result: Result) -> Report:
     return Report(
         title=result.name,
         answer=result.status,
+        quantities=answer_of(result),
         has_failed=result.status.startswith("Failed"),
         sections=sections,
         charts=list(charts.values()),
@@ -69,18 +70,18 @@ def report_of(result: Result) -> Report:
         below_charts=sensors_left_out(result),
         files=result_files(result),
         checked_files=CHECKED_FILES,
+        warnings=result.doubts,
         summary=summary_of(result),
         provenance=Facts(list(result.provenance.items())),
     )
 
 
 def _setup(result: Result) -> Section:
-    """Return what bodies, drop, law and sensors are, and the doubts about it."""
+    """Return what bodies, drop, law and sensors are, and how it is held."""
     (sketch,) = made_charts({"setup": partial(setup_chart, result)})
     blocks: list[Block] = [Figure(sketch, has_title=False)]
     if rows := setup_rows(result):
         blocks.append(Facts(rows))
-    blocks.append(Warnings(result.doubts))
     return Section("set-up", "Set-up", blocks, medium="page")
 
 
@@ -117,7 +118,7 @@ def sensor_table(result: Result) -> Table:
     """Return the largest reading of each sensor, and for how long it was beyond its range."""
     signals = result.signals
     headings = ["sensor", "largest reading"]
-    rows = [[name, text(signal.largest, signal.sensor.unit)] for name, signal in signals.items()]
+    rows = [[name, largest_reading(name, signal).text] for name, signal in signals.items()]
     overloads = [signal.overload_time for signal in signals.values()]
     if any(overloads):
         headings.append("beyond its range for")

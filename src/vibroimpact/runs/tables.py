@@ -12,6 +12,13 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
+from vibroimpact.cases.limits.limit import (
+    DURATION,
+    FORCE,
+    REBOUND,
+    RESTITUTION,
+    VIBRATION,
+)
 from vibroimpact.dynamics.motion.columns import (
     ALL_IMPACT_COLUMNS,
     FLUID_LEDGER,
@@ -61,6 +68,25 @@ _FIGURES_SHOWN = 6  # significant figures in a table of peaks
 _DECIMALS_OF_RATIO = 5  # in the table of impacts
 _SIGNIFICANT = 5  # figures of other values there
 
+_ROUGH = 0.1
+"""Relative error above which a result is shown in two figures."""
+
+_CHANGE_OF_TWO_FIGURES = 0.03
+
+_ERRORS_OF_COLUMNS = {
+    "max_force_N": FORCE,
+    "max_indentation_m": FORCE,
+    "max_acceleration_m_s2": FORCE,
+    "duration_s": DURATION,
+    "restitution_achieved": RESTITUTION,
+    "separation_speed_m_s": RESTITUTION,
+    "rebound_height_m": REBOUND,
+}
+"""The results of an impact whose error columns have."""
+
+_ERRORS_OF_ENERGIES = {"potential_J": REBOUND, "kinetic_J": REBOUND}
+"""Those whose error entries of the ledger have, which are what the rebound leaves."""
+
 _ROUNDING = 1e-12
 """Part of the energy put in up to which an energy is a rounding error."""
 
@@ -89,7 +115,7 @@ def impact_table(result: Result) -> Table:
     """
     number = len(result.impacts["impact"])
     columns = {
-        name: formatted_column(name, result.impacts[name], result.change_by_impact)
+        name: formatted_column(name, result.impacts[name], changes_of(result, name))
         for name in shown_columns(result)
     }
     headings = {name: ALL_IMPACT_COLUMNS[name].label for name in columns}
@@ -253,6 +279,9 @@ def _certain_figures_of_energy(entry: str, result: Result) -> int:
     this changes as a whole, whatever share of it the entry is.
     """
     impacts = result.impacts
+    error_name = VIBRATION if entry in VIBRATION_LEDGER else _ERRORS_OF_ENERGIES.get(entry, "")
+    if result.relative_errors.get(error_name, 0.0) > _ROUGH:
+        return int(certain_figures(_CHANGE_OF_TWO_FIGURES))
     change = np.minimum(np.nan_to_num(result.change_by_impact, nan=1.0), 1.0)
     if not len(change) or not change[-1] > 0.0:
         return ALL_FIGURES
@@ -313,11 +342,23 @@ def significant_figures(name: str, change: Floats) -> Indices:
     return certain_figures(change)
 
 
+def changes_of(result: Result, name: str) -> Floats:
+    """Return the relative change of each impact [-] that leaves the figures of a column.
+
+    It is that for an unavoidable perturbation of the drop. What is off by more than a tenth, by the
+    estimated error of the first impact, has two figures.
+    """
+    error = result.relative_errors.get(_ERRORS_OF_COLUMNS.get(name, ""), 0.0)
+    if error > _ROUGH:
+        return np.fmax(result.change_by_impact, _CHANGE_OF_TWO_FIGURES)
+    return result.change_by_impact
+
+
 def impact_text(result: Result, impact: int, name: str, unit: str) -> str:
     """Return an entry of the impact table as text with its unit, in certain figures."""
     value = float(result.impacts[name][impact])
-    figures = int(significant_figures(name, result.change_by_impact)[impact])
-    best = multiple(unit, value)
+    figures = int(significant_figures(name, changes_of(result, name))[impact])
+    best = multiple(unit, value, figures)
     return (
         f"{certain(digits(value / best.size), value / best.size, figures)}\u00a0{best.unit}".rstrip(
             "\u00a0"
@@ -350,22 +391,25 @@ def formatted_column(
         return "", [fixed(value, 0) for value in values]
     if kind == "factor":
         return "", [digits(value, 2) for value in values]
-    unit, values, cells = _cells(name, values)
     figures = significant_figures(
         name, np.zeros(len(values)) if change is None else change
     ).tolist()
+    unit, values, cells = _cells(name, values, max(figures, default=ALL_FIGURES))
     return unit, [
         certain(cell, value, number)
         for cell, value, number in zip(cells, values, figures, strict=True)
     ]
 
 
-def _cells(name: str, values: Floats) -> tuple[str, Floats, list[str]]:
-    """Return the unit in which a column is shown, its values in this unit, and their texts."""
+def _cells(name: str, values: Floats, figures: int) -> tuple[str, Floats, list[str]]:
+    """Return the unit in which a column is shown, its values in this unit, and their texts.
+
+    `figures`: how many of the value that is known best are certain.
+    """
     column = ALL_IMPACT_COLUMNS[name]
     if column.values == "ratio":
         return "", values, [fixed(value, _DECIMALS_OF_RATIO) for value in values]
-    scale = multiple(column.unit, values)
+    scale = multiple(column.unit, values, figures)
     values = values / scale.size
     if column.values == "time":
         # times are compared with each other: their absolute resolution is a microsecond, also late

@@ -97,8 +97,11 @@ def largest(values: ArrayLike) -> float:
     return float(np.max(values, where=np.isfinite(values), initial=0.0))
 
 
-def multiple(unit: str, values: ArrayLike) -> Multiple:
+def multiple(unit: str, values: ArrayLike, figures: int = 17) -> Multiple:
     """Return the largest multiple of an SI unit in which the largest of the values is at least 1.
+
+    Where that has more digits before its decimal point than are certain, it is the next larger one,
+    if there is any.
 
     Parameters
     ----------
@@ -107,6 +110,8 @@ def multiple(unit: str, values: ArrayLike) -> Multiple:
         multiples is returned unchanged.
     values : array_like
         Values in that unit; NaN is ignored.
+    figures : int
+        How many figures of the largest value are certain.
 
     Examples
     --------
@@ -114,6 +119,8 @@ def multiple(unit: str, values: ArrayLike) -> Multiple:
     'kN'
     >>> multiple("m", [0.0]).unit
     'm'
+    >>> multiple("s", [114e-6]).unit, multiple("s", [114e-6], figures=2).unit
+    ('µs', 'ms')
     >>> [multiple(unit, [7850.0]).unit for unit in ("m/s^2", "m/s2", "kg/m^3", "N/m^1.5")]
     ['m/s²', 'm/s²', 'kg/m³', 'N/m¹·⁵']
     """
@@ -124,10 +131,13 @@ def multiple(unit: str, values: ArrayLike) -> Multiple:
     magnitude = largest(values)
     if magnitude == 0.0:
         return next(candidate for candidate in multiples if candidate.size == 1.0)
+    larger = multiples[0]
     for candidate in multiples:
         # 0.9995 is printed as 1.000 with four digits
         if magnitude >= 0.9995 * candidate.size:
-            return candidate
+            has_certain_digits = magnitude < 10.0**figures * candidate.size
+            return candidate if has_certain_digits else larger
+        larger = candidate
     return multiples[-1]
 
 

@@ -112,7 +112,7 @@ def test_a_summary_has_name_status_table_and_doubts(name: str) -> None:
     assert cells.tags.count("tr") == (
         len(result.impacts["impact"]) + 1 if len(result.impacts["impact"]) else 0
     )
-    assert text.count("Doubt: ") == len(result.doubts)
+    assert text.count("Warning: ") == len(result.doubts)
     for row in impact_table(result).rows:
         assert all(cell in cells.texts for cell in row)
 

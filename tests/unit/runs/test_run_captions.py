@@ -60,7 +60,9 @@ def test_a_lower_sphere_is_not_called_a_plate() -> None:
     )
     assert "remains in the motion of the lower sphere." in words("energy", free)
     assert "damping of the bodies" not in words("energy", free)
-    assert "leaves at 700.0 mm/s, relative to the lower sphere: a restitution of 0.7000." in words(
+    # both spheres yield, and what changes by more than a tenth has two figures
+    assert free.relative_errors["restitution"] > 0.1
+    assert "leaves at 0.70 m/s, relative to the lower sphere: a restitution of 0.70." in words(
         "velocity", free
     )
 

@@ -188,7 +188,8 @@
     state.table = table;
     document.title = `${message.name} – vibroimpact`;
     $("status").textContent = message.status;
-    if (message.detail === "full") showDoubts(message.doubts);
+    showAnswer(message.answer, message.detail === "draft");
+    if (message.detail === "full") showWarnings(message.warnings);
     showImpacts(message.impacts);
     showLedger(message.ledger);
     showCharts(message.charts, message.names);
@@ -206,10 +207,24 @@
     });
   };
 
-  const showDoubts = (doubts) => {
-    const open = $("doubts").querySelector("details")?.open;
-    $("doubts").replaceChildren(...state.notes.map((text) => make("p", { text })), ...(doubts.length
-      ? [make("details", { open }, make("summary", { text: doubts.length === 1 ? "One doubt" : `${doubts.length} doubts` }), ...doubts.map((doubt) => make("p", { text: `Doubt: ${doubt}.` })))]
+  // The main results, each with the error that its digits leave. A draft has those of the impacts alone.
+  const showAnswer = (answer, isDraft) => {
+    const names = answer.map((one) => one.name);
+    const older = isDraft ? (state.answer || []).filter((one) => !names.includes(one.name)) : [];
+    state.answer = [...answer, ...older];
+    $("answer").replaceChildren(...state.answer.map((one) => make("div", { class: older.includes(one) ? "older" : false },
+      make("dt", { text: one.name }), make("dd", { text: one.text }),
+      ...(one.error ? [make("dd", { class: "error", text: one.error })] : []),
+      ...(one.note ? [make("dd", { class: "note", text: one.note })] : []))));
+  };
+
+  // The warning that changes most is always open, the others are folded.
+  const showWarnings = (warnings) => {
+    const open = $("warnings").querySelector("details")?.open;
+    const lines = warnings.map((one) => make("p", { class: `warning ${one.size}` }, make("strong", { text: "Warning" }), ` ${one.text}.`));
+    const others = lines.slice(1);
+    $("warnings").replaceChildren(...state.notes.map((text) => make("p", { text })), ...lines.slice(0, 1), ...(others.length
+      ? [make("details", { open }, make("summary", { text: others.length === 1 ? "1 more warning" : `${others.length} more warnings` }), ...others)]
       : []));
   };
 

@@ -299,8 +299,8 @@ class CalibrateSection(Section):
         None,
         description="whether the sphere was measured in air: its flights then have the drag of "
         "drop.air, or of air at 20 C and sea "
-        "level; without either key they are those in a vacuum, and a doubt "
-        "is raised where drag matters",
+        "level; without either key they are those in a vacuum, and a warning "
+        "is given where drag matters",
     )
     match: Annotated[
         Any,

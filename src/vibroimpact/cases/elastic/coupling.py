@@ -42,6 +42,7 @@ from vibroimpact.dynamics.statement.problem import Problem
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
+from vibroimpact.report.result_warning import effect_of
 from vibroimpact.structures.finite_elements.surface import place_of
 from vibroimpact.structures.mesh_compliance import mesh_compliance, mesh_compliance_key
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
@@ -119,6 +120,7 @@ def coupling_of(
     doubts = [doubt for body in bodies.values() for doubt in body.doubts]
     if doubts:
         facts["doubts"] = "\n".join(doubts)
+        facts["doubt_effects"] = "\n".join(f"{effect_of(doubt):.3g}" for doubt in doubts)
     linear = 0.0  # compliance in series
     finite_sphere = QuasiStatic()
     rigid: ModalBasis | None = None

@@ -17,6 +17,7 @@ from vibroimpact.cases.limits.limit import two_digits
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.report.reported import Reported
+from vibroimpact.report.result_warning import ResultWarning
 from vibroimpact.structures.damping import ConstantRatio, RatioOfEach, RatioTable
 from vibroimpact.structures.finite_elements.surface import Side, materials_at, place_of
 from vibroimpact.structures.frequency_error import MESH, REDUCTION, SUPPORTS, THEORY
@@ -258,11 +259,12 @@ def _doubts_of_frequencies(
     cause = model.facts.get(MAIN_CAUSE, MESH)
     remedy = _remedy(case, name, body.recipe, cause)
     which = f"{off} of the {len(errors)} modes" if len(errors) > 1 else "the mode"
-    yield (
+    yield ResultWarning(
         f"the frequencies of {which} of the {name} may be off by more than "
         f"{100 * _FREQUENCY_OFF:g} %, most that of mode {worst + 1}, "
         f"{model.frequencies[worst]:.4g} Hz, by about {two_digits(100.0 * errors[worst])} "
-        f"%, due to {cause}; {remedy}"
+        f"%, due to {cause}; {remedy}",
+        float(errors[worst]),
     )
 
 
@@ -352,10 +354,12 @@ def _doubts_of_mass(
         # describes
         volume = None
     expected = body.recipe.density * (volume or math.nan)
-    if abs(model.properties.mass / expected - 1.0) > (_WEIGHT_OFF if brought else _MESH_OFF):
-        yield (
+    difference = abs(model.properties.mass / expected - 1.0)
+    if difference > (_WEIGHT_OFF if brought else _MESH_OFF):
+        yield ResultWarning(
             f"{said}, and what the case describes weighs {expected:.4g} "
-            f"kg{hint or ('' if brought else '; its elements are too large')}"
+            f"kg{hint or ('' if brought else '; its elements are too large')}",
+            difference,
         )
     elif hint:
         yield said + hint

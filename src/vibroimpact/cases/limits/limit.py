@@ -16,6 +16,41 @@ from vibroimpact.arrays import Array
 from vibroimpact.cases.limits.conditions import Conditions
 from vibroimpact.registry import modules_in
 
+FORCE, DURATION, RESTITUTION, REBOUND, VIBRATION = (
+    "largest force",
+    "contact time",
+    "restitution",
+    "rebound",
+    "energy of vibration",
+)
+"""Results of the first impact that the effects of limits name."""
+
+LATER_IMPACTS = "later impacts"
+
+Effects = Mapping[str, float]
+"""Relative changes of results, by their names."""
+
+
+def _no_effects(drop: Conditions, number: float) -> Effects:
+    """Return that the effects are not estimated."""
+    return {}
+
+
+def of_slower_impact(loss: float) -> Effects:
+    r"""Return the effects of an approach speed that is lower by a part.
+
+    Hertz's largest force goes with :math:`v^{6/5}`, the contact time with :math:`v^{-1/5}`, and
+    energies with the square.
+    """
+    return {FORCE: 1.2 * loss, DURATION: 0.2 * loss, REBOUND: 2.0 * loss, VIBRATION: 2.0 * loss}
+
+
+def of_force_and_duration(change: float) -> Effects:
+    """Return the effects of a stiffness that changes the largest force, and the contact time as
+    much in the other direction, since the impulse stays.
+    """
+    return {FORCE: change, DURATION: change}
+
 
 @dataclass(frozen=True, kw_only=True)
 class Limit:
@@ -41,6 +76,11 @@ class Limit:
         and the remedy.
     shown : callable
         Formats a number for display.
+    effects : callable
+        Returns the relative changes that exceeding the limit makes in results of the drop, by their
+        names, from its `Conditions` and its number; without those that are not estimated.
+    group : str, default ""
+        Limits of one group are about the same thing: a drop is warned of the worst of them alone.
     without_case : bool, default False
         Whether the number depends on the peak values of the drop only, so that it also applies to a
         problem made in Python.
@@ -53,6 +93,8 @@ class Limit:
     number: Callable[[Conditions], Array]
     sentence: Callable[[Conditions, float], str]
     shown: Callable[[float], str]
+    effects: Callable[[Conditions, float], Effects] = _no_effects
+    group: str = ""
     without_case: bool = False
 
 

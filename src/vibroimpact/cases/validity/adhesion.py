@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.cases.limits.conditions import Conditions
-from vibroimpact.cases.limits.limit import Limit, percent_less
+from vibroimpact.cases.limits.limit import REBOUND, RESTITUTION, Limit, percent_less
 
 WORK_OF_ADHESION = 0.1
 """Work of adhesion assumed [J/m^2]: the upper end of the range of clean and dry bodies,
@@ -82,6 +82,7 @@ LIMITS = (
         threshold=0.01,
         number=_number,
         sentence=_sentence,
+        effects=lambda _, lost: {RESTITUTION: lost, REBOUND: 2.0 * lost},
         shown=percent_less,
     ),
 )

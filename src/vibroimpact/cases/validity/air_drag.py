@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.cases.limits.conditions import Conditions
-from vibroimpact.cases.limits.limit import Limit, percent_less
+from vibroimpact.cases.limits.limit import Limit, of_slower_impact, percent_less
 from vibroimpact.dynamics.core.fall import drag_coefficient
 from vibroimpact.dynamics.fluids.air import AIR_DENSITY, AIR_VISCOSITY, check_thin
 from vibroimpact.errors import InputError
@@ -125,6 +125,7 @@ LIMITS = (
         threshold=0.01,
         number=_number,
         sentence=_sentence,
+        effects=lambda _, loss: of_slower_impact(loss),
         shown=percent_less,
     ),
 )

@@ -8,7 +8,7 @@ import math
 
 from vibroimpact.arrays import Array
 from vibroimpact.cases.limits.conditions import Conditions
-from vibroimpact.cases.limits.limit import Limit, percent_less
+from vibroimpact.cases.limits.limit import Limit, of_slower_impact, percent_less
 from vibroimpact.dynamics.fluids.air import Air
 from vibroimpact.dynamics.fluids.liquid import Liquid
 
@@ -47,6 +47,8 @@ LIMITS = (
         threshold=0.01,
         number=_number,
         sentence=_sentence,
+        # the square of the speed goes with the acceleration
+        effects=lambda _, lost: of_slower_impact(0.5 * lost),
         shown=percent_less,
     ),
 )

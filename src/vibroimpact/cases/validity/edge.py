@@ -11,7 +11,7 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.cases.limits.conditions import Conditions
-from vibroimpact.cases.limits.limit import Limit
+from vibroimpact.cases.limits.limit import Effects, Limit, of_force_and_duration
 from vibroimpact.materials import RIGID
 
 _RADII = 10.0
@@ -125,19 +125,33 @@ def _sentence(drop: Conditions, _: float) -> str:
     about = "about " if _is_oblique(drop) else ""
     return (
         f"the first contact is {about}{distance:.3g} m from the edge of the plate, {relative}: "
-        f"{_effect(drop, distance, contact_radius)}; {remedy}"
+        f"{_in_words(drop, distance, contact_radius)}; {remedy}"
     )
 
 
-def _effect(drop: Conditions, distance: float, contact_radius: float) -> str:
-    """Return in words what the edge does to the contact."""
+def _effects(drop: Conditions, _: float) -> Effects:
+    """Return what the edge does to the contact, whose force goes with the power 0.4 of the
+    stiffness.
+    """
+    if drop.materials["plate"] is RIGID:
+        return {}
+    return of_force_and_duration(0.4 * _reduction(drop))
+
+
+def _reduction(drop: Conditions) -> float:
+    """Return by which part of its stiffness the contact is softer, near an edge that is free."""
     plate = drop.materials["plate"]
-    if plate is RIGID:
-        return "it reaches over the edge, and is computed as on a plane"
     share = float(drop.modulus / plate.plane_strain_modulus)
-    reduction = float(
-        softening(contact_radius, max(distance, contact_radius), plate.poissons_ratio, share)
-    )
+    contact_radius = float(drop.contact_radius)
+    distance = max(float(_distance(drop)), contact_radius)
+    return float(softening(contact_radius, distance, plate.poissons_ratio, share))
+
+
+def _in_words(drop: Conditions, distance: float, contact_radius: float) -> str:
+    """Return in words what the edge does to the contact."""
+    if drop.materials["plate"] is RIGID:
+        return "it reaches over the edge, and is computed as on a plane"
+    reduction = _reduction(drop)
     by = "at least" if distance < _NEAR * contact_radius else "about"
     return (
         f"a half space is too stiff there, by {by} {100.0 * reduction:.2g} % where the edge is free"
@@ -153,6 +167,7 @@ LIMITS = (
         threshold=1.0,
         number=_number,
         sentence=_sentence,
+        effects=_effects,
         shown=lambda ratio: (
             f"{1.0 / ratio:.2g} of the distance to keep" if ratio < math.inf else "on the edge"
         ),

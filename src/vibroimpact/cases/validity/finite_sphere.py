@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.cases.limits.conditions import Conditions
-from vibroimpact.cases.limits.limit import Limit, percent_less
+from vibroimpact.cases.limits.limit import Limit, of_force_and_duration, percent_less
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.structures.sphere_compliance import FITTED, sphere_term
 
@@ -140,6 +140,7 @@ LIMITS = (
         threshold=0.02,
         number=_number,
         sentence=_sentence,
+        effects=lambda _, deficit: of_force_and_duration(deficit),
         shown=percent_less,
     ),
 )

@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.cases.limits.conditions import Conditions
-from vibroimpact.cases.limits.limit import Limit, in_kilohertz, two_digits
+from vibroimpact.cases.limits.limit import DURATION, FORCE, Effects, Limit, in_kilohertz, two_digits
 from vibroimpact.units.display import text
 
 _TRUNCATED = 0.05  # allowed relative change of the largest force by truncated modes
@@ -25,6 +25,12 @@ def _number(body: str, drops: Conditions) -> Array:
         return math.nan
     part, highest = drops.summary.modes[body]
     return np.fmax(part / _TRUNCATED, np.divide(_CYCLES, highest * drops.summary.duration))
+
+
+def _effects(body: str, drop: Conditions, _: float) -> Effects:
+    """Return what the modes left out may change; the rebound by more, which is not estimated."""
+    part, _highest = drop.summary.modes[body]
+    return {FORCE: part, DURATION: part}
 
 
 def _sentence(body: str, drop: Conditions, _: float) -> str:
@@ -52,6 +58,7 @@ LIMITS = tuple(
         threshold=1.0,
         number=partial(_number, body),
         sentence=partial(_sentence, body),
+        effects=partial(_effects, body),
         shown=lambda ratio: (
             f"{two_digits(ratio)} times the limit ({100.0 * _TRUNCATED:g} % of the largest force, "
             f"or {_CYCLES} periods of the highest mode in a contact)"

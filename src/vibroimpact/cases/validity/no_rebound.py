@@ -6,7 +6,7 @@ import math
 
 from vibroimpact.arrays import Array
 from vibroimpact.cases.limits.conditions import Conditions
-from vibroimpact.cases.limits.limit import Limit
+from vibroimpact.cases.limits.limit import REBOUND, RESTITUTION, Limit
 from vibroimpact.dynamics.fluids.liquid import CRITICAL_STOKES, Liquid, restitution_kept
 
 
@@ -37,6 +37,7 @@ LIMITS = (
         threshold=1.0,
         number=_number,
         sentence=_sentence,
+        effects=lambda *_: {RESTITUTION: 1.0, REBOUND: 1.0},  # it stays on the plate
         shown=lambda number: f"{number:.3g}",
     ),
 )

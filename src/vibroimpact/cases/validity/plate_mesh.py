@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from vibroimpact.cases.limits.conditions import Conditions
-from vibroimpact.cases.limits.limit import Limit, percent_more, two_digits
+from vibroimpact.cases.limits.limit import Limit, of_force_and_duration, percent_more, two_digits
 
 PLATE_MESH_COMPLIANCE = "plate_mesh_compliance_m_N"
 """The fact with the compliance that the elements of the plate lack at the contact point."""
@@ -79,6 +79,7 @@ LIMITS = (
         threshold=_ALLOWED,
         number=lambda drops: drops.summary.plate_mesh,
         sentence=_sentence,
+        effects=lambda _, error: of_force_and_duration(error),
         shown=percent_more,
     ),
 )

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from vibroimpact.cases.limits.conditions import Conditions
-from vibroimpact.cases.limits.limit import Limit, percent_less
+from vibroimpact.cases.limits.limit import Limit, of_force_and_duration, percent_less
 from vibroimpact.dynamics.truncation import time_of_contact
 
 PLATE_THEORY_INERTIA = "plate_theory_inertia_m_s2_N"
@@ -69,6 +69,7 @@ LIMITS = (
         threshold=0.005,
         number=lambda drops: drops.summary.plate_theory,
         sentence=_sentence,
+        effects=lambda _, error: of_force_and_duration(error),
         shown=percent_less,
         without_case=True,
     ),

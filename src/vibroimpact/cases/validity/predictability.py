@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.cases.limits.conditions import Conditions
-from vibroimpact.cases.limits.limit import Limit, two_digits
+from vibroimpact.cases.limits.limit import LATER_IMPACTS, Limit, two_digits
 from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE
 
 _PREDICTED = 1e-3  # largest relative change of an impact that is not doubted
@@ -84,6 +84,7 @@ LIMITS = (
         threshold=_PREDICTED,
         number=_number,
         sentence=_sentence,
+        effects=lambda _, change: {LATER_IMPACTS: change},
         shown=_shown,
         without_case=True,
     ),

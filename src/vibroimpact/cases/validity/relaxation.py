@@ -8,16 +8,21 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.cases.limits.conditions import Conditions
-from vibroimpact.cases.limits.limit import Limit, two_digits
+from vibroimpact.cases.limits.limit import FORCE, Limit, two_digits
 
 
 def _number(drops: Conditions) -> Array:
     return np.divide(drops.law_parameter("dissipation_time"), drops.summary.duration)
 
 
+def _second_order(ratio: float) -> float:
+    """Return the part of the force that the term of second order in the dissipation time has."""
+    return 0.5 * (math.pi * ratio) ** 2
+
+
 def _sentence(drop: Conditions, ratio: float) -> str:
     time = float(drop.law_parameter("dissipation_time"))
-    second = two_digits(50.0 * (math.pi * ratio) ** 2)
+    second = two_digits(100.0 * _second_order(ratio))
     return (
         f"the dissipation time, {time:.2g} s, is {two_digits(ratio)} of the contact's "
         f"{drop.summary.duration:.2g} s: "
@@ -36,6 +41,7 @@ LIMITS = (
         threshold=0.1,
         number=_number,
         sentence=_sentence,
+        effects=lambda _, ratio: {FORCE: _second_order(ratio)},
         shown=lambda ratio: f"{two_digits(ratio)} of the contact",
     ),
 )

@@ -9,12 +9,28 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.cases.limits.conditions import Conditions
-from vibroimpact.cases.limits.limit import Limit, two_digits
+from vibroimpact.cases.limits.limit import (
+    DURATION,
+    FORCE,
+    REBOUND,
+    RESTITUTION,
+    VIBRATION,
+    Effects,
+    Limit,
+    two_digits,
+)
+from vibroimpact.contact.laws.thornton import Thornton
 from vibroimpact.materials import RIGID, Material
 
 # Johnson 1985, section 6.1: yield begins below the surface at a peak pressure of 1.6 times the
 # yield strength
 _YIELD = 1.6
+_FULLY_PLASTIC = 2.8
+"""Pressure of a contact that flows, over the yield strength."""
+
+_LIKE_ELASTIC = 0.99
+"""Part of the elastic force from which a contact that yields is as an elastic one."""
+
 _BODIES = ("sphere", "plate")
 
 
@@ -52,6 +68,54 @@ def demands(material: Material, peak_pressure: Array) -> dict[str, tuple[Array, 
     }
 
 
+def plastic_impact(
+    force: float, radius: float, modulus: float, yield_strength: float
+) -> tuple[float, float]:
+    r"""Return the largest force that plastic flow leaves of an elastic one, as a ratio, and the
+    restitution of the contact.
+
+    They are those of `Thornton`'s law with a pressure of 2.8 times the yield strength, for the
+    energy that the elastic contact takes up.
+
+    Parameters
+    ----------
+    force : float
+        Largest force of the elastic contact [N].
+    radius, modulus : float
+        Effective radius [m] and modulus [Pa] of the pair.
+    yield_strength : float
+        Yield strength of the body that yields [Pa].
+
+    References
+    ----------
+    Thornton, C. (1997). Coefficient of restitution for collinear collisions of elastic-perfectly
+    plastic spheres. J. Appl. Mech. 64, 383-386. Tabor, D. (1951). The Hardness of Metals. Clarendon
+    Press, Oxford: the pressure of 2.8 times the yield strength.
+
+    Examples
+    --------
+    >>> ratio, restitution = plastic_impact(2519.0, 0.01, 57.7e9, 235e6)
+    >>> round(ratio, 2), round(restitution, 2)
+    (0.56, 0.51)
+    """
+    law = Thornton(
+        effective_modulus=modulus,
+        effective_radius=radius,
+        yield_pressure=_FULLY_PLASTIC * yield_strength,
+    )
+    depth = (0.75 * force / (modulus * math.sqrt(radius))) ** (2.0 / 3.0)
+    energy = 0.4 * force * depth
+    yield_force, slope = law.plastic_coefficients
+    plastic_energy = energy - 0.4 * float(yield_force) * float(law.yield_indentation)
+    if plastic_energy <= 0.0:
+        return 1.0, 1.0
+    # beyond the first yield the force grows in proportion to the indentation
+    plastic_force = math.sqrt(float(yield_force) ** 2 + 2.0 * float(slope) * plastic_energy)
+    # the closed form takes the energy as that of a mass and a speed
+    restitution = law.closed_form_restitution(np.array(2.0 * energy), np.array(1.0))
+    return plastic_force / force, float(restitution)
+
+
 def _stress_ratio(body: str, drops: Conditions) -> Array:
     """Return the largest ratio of stress to strength of a body.
 
@@ -69,27 +133,80 @@ def _stress_ratio(body: str, drops: Conditions) -> Array:
 def _strength_sentence(body: str, drop: Conditions, ratio: float) -> str:
     material = drop.materials[body]
     pressure = float(drop.peak_pressure)
-    name, (stress, strength, verb) = max(
-        demands(material, pressure).items(), key=lambda failure: failure[1][0] / failure[1][1]
-    )
+    name, (stress, strength, verb) = _failure(body, drop)
+    times = "just above" if ratio < 1.05 else f"{two_digits(ratio)} times"
     known = f"its {name.replace('_', ' ')} of {_stress(strength)}"
     if name == "tensile_strength":
-        comparison = (
-            f": the tension at the rim of the contact is {_stress(stress)}, {two_digits(ratio)} "
-            f"times {known}"
-        )
+        comparison = f"the tension at the rim of the contact, {_stress(stress)}, is {times} {known}"
     else:
         begins = "yield" if name == "yield_strength" else "be crushed"
-        times = "just above" if ratio < 1.05 else f"{two_digits(ratio)} times"
-        comparison = f", {times} that at which it begins to {begins} ({_YIELD} times {known})"
-    remedy = "take the force for an upper bound, and the restitution from a measurement"
+        comparison = (
+            f"Hertz's peak pressure of {_stress(pressure)} is {times} that at which it begins to "
+            f"{begins}, {_YIELD} times {known}"
+        )
+    also = _fails_too(body, drop)
+    return f"{_named(body, material)} {verb}{also}: {_meaning(body, drop, name)}; {comparison}"
+
+
+def _fails_too(body: str, drop: Conditions) -> str:
+    """Return in words that the other body fails too, if it does."""
+    (other,) = (name for name in _BODIES if name != body)
+    if not _stress_ratio(other, drop) > 1.0:
+        return ""
+    return f", and so does {_named(other, drop.materials[other])}"
+
+
+def _failure(body: str, drop: Conditions) -> tuple[str, tuple[Array, Array, str]]:
+    """Return the strength of a body that is exceeded most, with stress, strength and verb."""
+    failures = demands(drop.materials[body], float(drop.peak_pressure))
+    return max(failures.items(), key=lambda failure: failure[1][0] / failure[1][1])
+
+
+def _meaning(body: str, drop: Conditions, name: str) -> str:
+    """Return what the failure by a strength means for the result, with the remedy."""
+    if name != "yield_strength":
+        return (
+            f"{drop.law.name} leaves this out: take the force for an upper bound, and the "
+            "restitution from a measurement"
+        )
+    ratio, restitution = _plastic_impact_of(body, drop)
     # in a liquid a law needs a restitution
-    if name == "yield_strength" and drop.case["contact"].get("liquid") is None:
-        remedy = "take a law that yields, such as meyer"
+    law = "" if drop.case["contact"].get("liquid") is not None else ', as by contact.law = "meyer"'
+    if ratio > _LIKE_ELASTIC:
+        return "the plastic flow stays below the surface, and changes little"
     return (
-        f"{_named(body, material)} {verb} under Hertz's peak pressure of "
-        f"{_stress(pressure)}{comparison}; {drop.law.name} leaves this out: {remedy}"
+        f"with plastic flow{law}, the largest force would be about "
+        f"{two_digits(100.0 * (1.0 - ratio))} % smaller, and the restitution of the contact about "
+        f"{restitution:.1g}"
     )
+
+
+def _plastic_impact_of(body: str, drop: Conditions) -> tuple[float, float]:
+    """Return what plastic flow of a body would leave of the force, and the restitution."""
+    return plastic_impact(
+        float(drop.summary.force),
+        float(drop.effective_radius),
+        float(drop.modulus),
+        float(drop.materials[body].yield_strength or math.inf),
+    )
+
+
+def _effects(body: str, drop: Conditions, ratio: float) -> Effects:
+    """Return what yielding would change, where it is known: nothing below the strength."""
+    if ratio <= 1.0:
+        return {FORCE: 0.0}
+    name, _ = _failure(body, drop)
+    if name != "yield_strength":
+        return {}
+    force, restitution = _plastic_impact_of(body, drop)
+    lost = 1.0 - restitution
+    return {
+        FORCE: 1.0 - force,
+        DURATION: 1.0 - force,
+        RESTITUTION: lost,
+        REBOUND: 2.0 * lost,
+        VIBRATION: 2.0 * (1.0 - force),  # energy goes with the square of the force
+    }
 
 
 def _stress(value: float) -> str:
@@ -123,13 +240,15 @@ def _pressure_ratio(drops: Conditions) -> Array:
 
 def _unknown_sentence(drop: Conditions, _: float) -> str:
     bodies = [_named(body, drop.materials[body]) for body in _bodies_without_strength(drop)]
+    yields = "yields or cracks"
+    materials = "its material"
+    if len(bodies) > 1:
+        yields = "yield or crack"
+        materials = "their materials"
     return (
-        f"whether {' and '.join(bodies)} "
-        f"{'yield or crack' if len(bodies) > 1 else 'yields or cracks'} "
-        "under Hertz's peak pressure of "
-        f"{_stress(float(drop.peak_pressure))} is not known: no strength is given; give "
-        "yield_strength, compressive_strength or "
-        f"tensile_strength in {'their materials' if len(bodies) > 1 else 'its material'}"
+        f"whether {' and '.join(bodies)} {yields} under Hertz's peak pressure of "
+        f"{_stress(float(drop.peak_pressure))} is not known; give yield_strength, "
+        f"compressive_strength or tensile_strength in {materials}"
     )
 
 
@@ -142,6 +261,8 @@ LIMITS = (
             threshold=1.0,
             number=partial(_stress_ratio, body),
             sentence=partial(_strength_sentence, body),
+            effects=partial(_effects, body),
+            group="strength",
             shown=lambda ratio: f"{ratio:.3g} times the strength",
         )
         for body in _BODIES
@@ -154,6 +275,7 @@ LIMITS = (
         threshold=0.0,
         number=_pressure_ratio,
         sentence=_unknown_sentence,
+        group="strength",
         shown=lambda ratio: f"a peak pressure of {ratio:.2g} of the effective modulus",
     ),
 )

@@ -105,6 +105,6 @@ def why_failed(energy: Mapping[str, Any]) -> str:
     return (
         "the contact could not be integrated to the tolerance; try a larger tolerance "
         "(run.tolerance, up to 1e-6), and see what "
-        "`vibroimpact check` doubts: a plate that deflects by many times its thickness is "
+        "`vibroimpact check` warns of: a plate that deflects by many times its thickness is "
         "beyond the theory."
     )

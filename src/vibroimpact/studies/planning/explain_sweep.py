@@ -30,7 +30,7 @@ def explain_sweep(sweep: Sweep) -> RenderableType:
     return Group(
         Text(heading, style="bold"),
         _axes_table(sweep),
-        *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in axis_slips(sweep)),
+        *(Text(f"Warning: {doubt}.", style="yellow") for doubt in axis_slips(sweep)),
         Text("The case at its first point:\n"),
     )
 
