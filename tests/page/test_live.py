@@ -69,7 +69,7 @@ def assert_tables_are_those_of(page: Page, result: Result) -> None:
         [one.title, one.energy, one.part] for one in ledger_table(result)[1]
     ]
     assert page.locator("#status").text_content() == result.status
-    assert page.locator("#doubts details p").all_text_contents() == [
+    assert page.locator("#warnings .warning").all_text_contents() == [
         str(line) for line in warning_lines(result.doubts)
     ]
 
@@ -229,7 +229,7 @@ def test_the_ball_stays_under_the_pointer_while_progress_is_shown(
     page.evaluate("() => { document.getElementById('work').hidden = false; }")
     assert page.evaluate(top) == before
     page.evaluate(
-        "() => document.getElementById('doubts').append(vibroimpact.make('p', { text: 'a "
+        "() => document.getElementById('warnings').append(vibroimpact.make('p', { text: 'a "
         "line that comes meanwhile' }))"
     )
     assert page.evaluate(top) > before
@@ -276,7 +276,7 @@ def test_a_file_is_dropped_or_chosen(page: Page, server: Server) -> None:
     )
     until(page, "() => document.title.startsWith('another drop')")
     settle(page)
-    assert page.locator("#doubts > p").all_text_contents() == [
+    assert page.locator("#warnings > p:not(.warning)").all_text_contents() == [
         "[sweep] is left out here; use: vibroimpact sweep"
     ]
     for content, words in (

@@ -206,10 +206,10 @@ def test_text_stands_out_and_headings_are_in_order(
     open_live(page, server, ELASTIC)
     page.locator("#hold").click()
     type_value(page, "contact.restitution", 7)
-    page.locator("#doubts summary").click()
+    page.locator("#warnings summary").click()
     for name in names(page):
         show(page, name)
-    assert page.locator("tr.held, .fault-here, .unit, .headline, #doubts details p").count() > 10
+    assert page.locator("tr.held, .fault-here, .unit, .headline, #warnings .warning").count() > 10
     assert faint_texts(page) == []
     assert_headings_are_in_order(page)
 

@@ -148,7 +148,7 @@ def test_doubts_are_printed_and_kept(
     assert len(summary["doubts"]) == len(told)
     assert all(sum(words in doubt for doubt in summary["doubts"]) == 1 for words in told)
     page = (tmp_path / "out" / "report.html").read_text()
-    assert printed.count("Warning: ") == page.count("<strong>Warning</strong>") == 4
+    assert printed.count("Warning: ") == page.count("<strong>Warning:</strong>") == 4
 
 
 def test_result_reads_back(folder: Path, theory: vi.Response) -> None:

@@ -124,8 +124,8 @@ def test_the_answer_is_first_and_the_worst_warning_beside_it() -> None:
     assert effects == sorted(effects, reverse=True)
     assert len(effects) > 1
     page = page_of_report(result.report)
-    assert page.index('<dl class="answer">') < page.index("<strong>Warning</strong>")
-    assert page.index("<strong>Warning</strong>") < page.index('<details class="warnings">')
+    assert page.index('<dl class="answer">') < page.index("<strong>Warning:</strong>")
+    assert page.index("<strong>Warning:</strong>") < page.index('<details class="warnings">')
     assert result.report.document["answer"][0]["value"] == first(result, "max_force_N")
 
 

@@ -221,7 +221,7 @@
   // The warning that changes most is always open, the others are folded.
   const showWarnings = (warnings) => {
     const open = $("warnings").querySelector("details")?.open;
-    const lines = warnings.map((one) => make("p", { class: `warning ${one.size}` }, make("strong", { text: "Warning" }), ` ${one.text}.`));
+    const lines = warnings.map((one) => make("p", { class: `warning ${one.size}` }, make("strong", { text: "Warning:" }), ` ${one.text}.`));
     const others = lines.slice(1);
     $("warnings").replaceChildren(...state.notes.map((text) => make("p", { text })), ...lines.slice(0, 1), ...(others.length
       ? [make("details", { open }, make("summary", { text: others.length === 1 ? "1 more warning" : `${others.length} more warnings` }), ...others)]
