@@ -33,31 +33,11 @@ def identification_charts(identification: Identification) -> list[Chart]:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> plate = {
-    ...     "size": [0.3, 0.3, 0.02],
-    ...     "material": "steel",
-    ...     "model": "elastic",
-    ...     "modes": 20,
-    ...     "supports": "clamped",
-    ...     "damping": 0.01,
-    ... }
-    >>> case = vi.case_of(
-    ...     {
-    ...         "sphere": {"radius": 0.02, "material": "rock-paper"},
-    ...         "plate": plate,
-    ...         "drop": {"speed": 2.0, "position": [0.02, 0.01]},
-    ...         "contact": {"law": "hertz"},
-    ...         "run": {"impacts": 1},
-    ...         "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
-    ...     }
-    ... )
-    >>> records = [vi.signals.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")]
-    >>> [
-    ...     chart.name
-    ...     for chart in identification_charts(
-    ...         vi.identification.identify(case, records, place=(0.02, 0.01))
-    ...     )
-    ... ]
+    >>> case = vi.load_case("signals:coal-gangue", {"plate.modes": 30})
+    >>> signal = vi.simulate(case).signals()["a1"]
+    >>> record = vi.signals.Record("a1", signal.value, signal.sensor.rate, "m/s2")
+    >>> found = vi.identification.identify(case, [record], place=(0.0, 0.0))
+    >>> [chart.name for chart in identification_charts(found)]
     ['records', 'force']
     """
     makers = {"records": _records_chart, "force": _force_chart}

@@ -80,34 +80,12 @@ class Identification(Reported, reported_in="vibroimpact.identification.report"):
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> plate = {
-    ...     "size": [0.3, 0.3, 0.02],
-    ...     "material": "steel",
-    ...     "model": "elastic",
-    ...     "modes": 20,
-    ...     "supports": "clamped",
-    ...     "damping": 0.01,
-    ... }
-    >>> case = vi.case_of(
-    ...     {
-    ...         "sphere": {"radius": 0.02, "material": "rock-paper"},
-    ...         "plate": plate,
-    ...         "drop": {"speed": 2.0, "position": [0.02, 0.01]},
-    ...         "contact": {"law": "hertz"},
-    ...         "run": {"impacts": 1},
-    ...         "sensors": [
-    ...             {"name": "a", "position": [0.1, 0.03], "rate": 20e3},
-    ...             {"name": "b", "position": [-0.05, 0.08], "rate": 20e3},
-    ...         ],
-    ...     }
-    ... )
-    >>> records = [
-    ...     vi.signals.Record(name, one.value, 20e3, "m/s2")
-    ...     for name, one in vi.simulate(case).signals().items()
-    ... ]
-    >>> found = vi.identification.identify(case, records)
-    >>> round(found.estimates["radius_m"].value, 3), found.estimates["radius_m"].interval[0] < 0.02
-    (0.02, True)
+    >>> case = vi.load_case("signals:coal-gangue", {"plate.modes": 30})
+    >>> signal = vi.simulate(case).signals()["a1"]
+    >>> record = vi.signals.Record("a1", signal.value, signal.sensor.rate, "m/s2")
+    >>> found = vi.identification.identify(case, [record], place=(0.0, 0.0))
+    >>> round(found.estimates["radius_m"].value, 3), found.estimates["radius_m"].interval[0] < 0.025
+    (0.025, True)
     """
 
     plate: Plate
@@ -316,32 +294,13 @@ def identify_force(
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> plate = {
-    ...     "size": [0.3, 0.3, 0.02],
-    ...     "material": "steel",
-    ...     "model": "elastic",
-    ...     "modes": 20,
-    ...     "supports": "clamped",
-    ...     "damping": 0.01,
-    ... }
-    >>> case = vi.case_of(
-    ...     {
-    ...         "sphere": {"radius": 0.02, "material": "rock-paper"},
-    ...         "plate": plate,
-    ...         "drop": {"speed": 2.0, "position": [0.02, 0.01]},
-    ...         "contact": {"law": "hertz"},
-    ...         "run": {"impacts": 1},
-    ...         "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
-    ...     }
-    ... )
+    >>> case = vi.load_case("signals:coal-gangue", {"plate.modes": 30})
     >>> response = vi.simulate(case)
-    >>> force = vi.identification.identify_force(
-    ...     case,
-    ...     [vi.signals.Record("a", response.signals()["a"].value, 20e3, "m/s2")],
-    ...     (0.02, 0.01),
-    ... )
+    >>> signal = response.signals()["a1"]
+    >>> record = vi.signals.Record("a1", signal.value, signal.sensor.rate, "m/s2")
+    >>> force = vi.identification.identify_force(case, [record], (0.0, 0.0))
     >>> speeds = response.impacts["approach_speed_m_s"] + response.impacts["separation_speed_m_s"]
-    >>> round(float(force.impulse[0] / (response.problem.sphere.mass * speeds[0])), 2)
+    >>> round(float(force.impulse[0] / (response.problem.sphere.mass * speeds[0])), 1)
     1.0
     """
     plate = prepared_plate(case, window)

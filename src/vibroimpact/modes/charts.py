@@ -41,20 +41,8 @@ def mode_charts(modes: Mapping[str, BodyModes]) -> list[Chart]:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> case = vi.case_of(
-    ...     {
-    ...         "sphere": {
-    ...             "radius": "25 mm",
-    ...             "material": "rock-paper",
-    ...             "model": "elastic",
-    ...             "modes": 5,
-    ...         },
-    ...         "plate": {"material": "rigid"},
-    ...         "drop": {"speed": 1.0},
-    ...         "contact": {"law": "hertz"},
-    ...     }
-    ... )
-    >>> [(chart.name, len(chart.panels)) for chart in mode_charts(vi.compute_modes(case))]
+    >>> modes = vi.compute_modes(vi.load_case("paper:type2", {"sphere.modes": 5}))
+    >>> [(chart.name, len(chart.panels)) for chart in mode_charts(modes)]
     [('sphere_modes', 8)]
     """
     return made_charts(

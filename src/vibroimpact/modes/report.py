@@ -50,20 +50,8 @@ def report_of(modes: Modes, measured: MeasuredTable | None = None) -> Report:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> case = vi.case_of(
-    ...     {
-    ...         "sphere": {
-    ...             "radius": "25 mm",
-    ...             "material": "rock-paper",
-    ...             "model": "elastic",
-    ...             "modes": 5,
-    ...         },
-    ...         "plate": {"material": "rigid"},
-    ...         "drop": {"speed": 1.0},
-    ...         "contact": {"law": "hertz"},
-    ...     }
-    ... )
-    >>> list(report_of(vi.compute_modes(case)).files)
+    >>> modes = vi.compute_modes(vi.load_case("paper:type2", {"sphere.modes": 5}))
+    >>> list(report_of(modes).files)
     ['case.toml', 'modes.csv', 'sphere.bdf', 'sphere.inp', 'sphere.vtu']
     """
     charts = {chart.name: chart for chart in mode_charts(modes)}

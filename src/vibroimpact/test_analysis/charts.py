@@ -36,25 +36,9 @@ def correlation_charts(correlation: Correlation) -> list[Chart]:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> plate = {
-    ...     "size": [0.3, 0.3, 0.02],
-    ...     "material": "steel",
-    ...     "model": "elastic",
-    ...     "modes": 10,
-    ...     "supports": "clamped",
-    ...     "damping": 0.01,
-    ... }
-    >>> case = vi.case_of(
-    ...     {
-    ...         "sphere": {"radius": 0.02, "material": "steel"},
-    ...         "plate": plate,
-    ...         "drop": {"speed": 1.0, "position": [0.02, 0.01]},
-    ...         "contact": {"law": "hertz"},
-    ...         "run": {"duration": 0.1},
-    ...         "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
-    ...     }
-    ... )
-    >>> record = vi.signals.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")
+    >>> case = vi.load_case("signals:coal-gangue", {"plate.modes": 10})
+    >>> signal = vi.simulate(case).signals()["a1"]
+    >>> record = vi.signals.Record("a1", signal.value, signal.sensor.rate, "m/s2")
     >>> found = vi.test_analysis.correlate(case, [record], window=0.05)
     >>> [chart.name for chart in correlation_charts(found)]
     ['overlay', 'responses', 'frac', 'damping']

@@ -65,19 +65,7 @@ class BodyModes:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> case = vi.case_of(
-    ...     {
-    ...         "sphere": {
-    ...             "radius": "25 mm",
-    ...             "material": "rock-paper",
-    ...             "model": "elastic",
-    ...             "modes": 5,
-    ...         },
-    ...         "plate": {"material": "rigid"},
-    ...         "drop": {"speed": 1.0},
-    ...         "contact": {"law": "hertz"},
-    ...     }
-    ... )
+    >>> case = vi.load_case("paper:type2", {"sphere.modes": 5})
     >>> sphere = vi.compute_modes(case)["sphere"]
     >>> len(sphere.basis.frequencies), round(sphere.basis.mass, 4)
     (5, 0.0903)
@@ -108,20 +96,7 @@ class Modes(Reported, Mapping[str, BodyModes], reported_in="vibroimpact.modes.re
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> case = vi.case_of(
-    ...     {
-    ...         "sphere": {
-    ...             "radius": "25 mm",
-    ...             "material": "rock-paper",
-    ...             "model": "elastic",
-    ...             "modes": 5,
-    ...         },
-    ...         "plate": {"material": "rigid"},
-    ...         "drop": {"speed": 1.0},
-    ...         "contact": {"law": "hertz"},
-    ...     }
-    ... )
-    >>> modes = vi.compute_modes(case)
+    >>> modes = vi.compute_modes(vi.load_case("paper:type2", {"sphere.modes": 5}))
     >>> list(modes), list(modes.charts)
     (['sphere'], ['sphere_modes'])
     """
@@ -165,20 +140,8 @@ def compute_modes(
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> case = vi.case_of(
-    ...     {
-    ...         "sphere": {
-    ...             "radius": "25 mm",
-    ...             "material": "rock-paper",
-    ...             "model": "elastic",
-    ...             "modes": 5,
-    ...         },
-    ...         "plate": {"material": "rigid"},
-    ...         "drop": {"speed": 1.0},
-    ...         "contact": {"law": "hertz"},
-    ...     }
-    ... )
-    >>> [round(float(value), -2) for value in compute_modes(case)["sphere"].basis.frequencies[:2]]
+    >>> sphere = compute_modes(vi.load_case("paper:type2", {"sphere.modes": 5}))["sphere"]
+    >>> [round(float(value), -2) for value in sphere.basis.frequencies[:2]]
     [12700.0, 12700.0]
     """
     bodies = elastic_bodies(case)

@@ -37,26 +37,9 @@ def response_charts(correlation: ResponseCorrelation) -> list[Chart]:
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> plate = {
-    ...     "size": [0.3, 0.3, 0.02],
-    ...     "material": "steel",
-    ...     "model": "elastic",
-    ...     "modes": 10,
-    ...     "supports": "clamped",
-    ...     "damping": 0.01,
-    ... }
-    >>> case = vi.case_of(
-    ...     {
-    ...         "sphere": {"radius": 0.02, "material": "steel"},
-    ...         "plate": plate,
-    ...         "drop": {"speed": 1.0, "position": [0.02, 0.01]},
-    ...         "contact": {"law": "hertz"},
-    ...         "sensors": [{"name": "a", "position": [0.1, 0.03]}],
-    ...     }
-    ... )
-    >>> found = vi.test_analysis.correlate_responses(
-    ...     case, vi.test_analysis.responses_of_case(case, np.arange(500.0, 4000.0, 2.0))
-    ... )
+    >>> case = vi.load_case("signals:coal-gangue", {"plate.modes": 10})
+    >>> measured = vi.test_analysis.responses_of_case(case, np.arange(50.0, 400.0))
+    >>> found = vi.test_analysis.correlate_responses(case, measured)
     >>> [chart.name for chart in response_charts(found)]
     ['responses', 'frac', 'damping']
     """

@@ -69,28 +69,11 @@ def correlate_responses(
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> plate = {
-    ...     "size": [0.3, 0.3, 0.02],
-    ...     "material": "steel",
-    ...     "model": "elastic",
-    ...     "modes": 10,
-    ...     "supports": "clamped",
-    ...     "damping": 0.01,
-    ... }
-    >>> case = vi.case_of(
-    ...     {
-    ...         "sphere": {"radius": 0.02, "material": "steel"},
-    ...         "plate": plate,
-    ...         "drop": {"speed": 1.0, "position": [0.02, 0.01]},
-    ...         "contact": {"law": "hertz"},
-    ...         "sensors": [{"name": "a", "position": [0.1, 0.03]}],
-    ...     }
-    ... )
-    >>> measured = vi.test_analysis.responses_of_case(case, np.arange(500.0, 4000.0, 2.0))
-    >>> found = vi.test_analysis.correlate_responses(case, measured)
-    >>> pair = found.modes[0]
+    >>> case = vi.load_case("signals:coal-gangue", {"plate.modes": 10})
+    >>> measured = vi.test_analysis.responses_of_case(case, np.arange(50.0, 400.0, 0.5))
+    >>> pair = vi.test_analysis.correlate_responses(case, measured).modes[0]
     >>> abs(pair.frequency_difference) < 1e-6, round(pair.measured.damping_ratio.value, 5)
-    (True, 0.01)
+    (True, 0.02)
     """
     problem = plate_problem(case, progress)
     match = matched(problem.sensors, responses, reference)
@@ -188,23 +171,7 @@ def responses_of_case(
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> plate = {
-    ...     "size": [0.3, 0.3, 0.02],
-    ...     "material": "steel",
-    ...     "model": "elastic",
-    ...     "modes": 10,
-    ...     "supports": "clamped",
-    ...     "damping": 0.01,
-    ... }
-    >>> case = vi.case_of(
-    ...     {
-    ...         "sphere": {"radius": 0.02, "material": "steel"},
-    ...         "plate": plate,
-    ...         "drop": {"speed": 1.0, "position": [0.02, 0.01]},
-    ...         "contact": {"law": "hertz"},
-    ...         "sensors": [{"name": "a", "position": [0.1, 0.03]}],
-    ...     }
-    ... )
+    >>> case = vi.load_case("signals:coal-gangue", {"plate.modes": 10})
     >>> (response,) = vi.test_analysis.responses_of_case(case, [200.0, 400.0, 800.0])
     >>> response.unit, len(response.value)
     ('m/s2/N', 3)

@@ -59,27 +59,11 @@ class ResponseCorrelation(Reported, reported_in="vibroimpact.test_analysis.respo
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> plate = {
-    ...     "size": [0.3, 0.3, 0.02],
-    ...     "material": "steel",
-    ...     "model": "elastic",
-    ...     "modes": 10,
-    ...     "supports": "clamped",
-    ...     "damping": 0.01,
-    ... }
-    >>> case = vi.case_of(
-    ...     {
-    ...         "sphere": {"radius": 0.02, "material": "steel"},
-    ...         "plate": plate,
-    ...         "drop": {"speed": 1.0, "position": [0.02, 0.01]},
-    ...         "contact": {"law": "hertz"},
-    ...         "sensors": [{"name": "a", "position": [0.1, 0.03]}],
-    ...     }
-    ... )
-    >>> measured = vi.test_analysis.responses_of_case(case, np.arange(500.0, 4000.0, 2.0))
+    >>> case = vi.load_case("signals:coal-gangue", {"plate.modes": 10})
+    >>> measured = vi.test_analysis.responses_of_case(case, np.arange(50.0, 400.0))
     >>> found = vi.test_analysis.correlate_responses(case, measured)
     >>> found.sensors[0].name, found.frac.round(6).tolist(), found.scale.round(6).tolist()
-    ('a', [1.0], [1.0])
+    ('a1', [1.0], [1.0])
     """
 
     case: CaseTable
