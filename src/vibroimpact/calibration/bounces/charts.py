@@ -34,14 +34,8 @@ def bounce_charts(rebounds: Rebounds) -> list[Chart]:
     >>> import numpy as np
     >>> import vibroimpact as vi
     >>> microphone = vi.signals.Record("microphone", np.zeros(48000), 48e3, "Pa")
-    >>> heard = vi.signals.Bounces(
-    ...     microphone,
-    ...     np.array([0.0, 0.4, 0.72, 0.976]),
-    ...     np.full(4, 1e-5),
-    ...     np.ones(4),
-    ...     np.zeros(0),
-    ...     (),
-    ... )
+    >>> time = np.array([0.0, 0.4, 0.72, 0.976])
+    >>> heard = vi.signals.Bounces(microphone, time, np.full(4, 1e-5), np.ones(4), np.zeros(0), ())
     >>> [chart.name for chart in bounce_charts(vi.calibration.rebounds_of(heard))]
     ['record', 'restitution']
     """

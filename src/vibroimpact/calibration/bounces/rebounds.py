@@ -64,14 +64,8 @@ class Rebounds(Reported, reported_in="vibroimpact.calibration.bounces.report"):
     >>> import numpy as np
     >>> import vibroimpact as vi
     >>> microphone = vi.signals.Record("microphone", np.zeros(48000), 48e3, "Pa")
-    >>> heard = vi.signals.Bounces(
-    ...     microphone,
-    ...     np.array([0.0, 0.4, 0.72, 0.976]),
-    ...     np.full(4, 1e-5),
-    ...     np.ones(4),
-    ...     np.zeros(0),
-    ...     (),
-    ... )
+    >>> time = np.array([0.0, 0.4, 0.72, 0.976])
+    >>> heard = vi.signals.Bounces(microphone, time, np.full(4, 1e-5), np.ones(4), np.zeros(0), ())
     >>> found = vi.calibration.rebounds_of(heard, gravity=9.81, height=0.3)
     >>> found.approach_speed.round(2).tolist(), found.intervals.shape
     ([2.43, 1.96, 1.57, 1.26], (4, 2))
@@ -136,15 +130,9 @@ def rebounds_of(
     Examples
     --------
     >>> from vibroimpact.signals.record import Record
-    >>> touches = np.array([0.0, 0.4, 0.72, 0.976])
-    >>> heard = Bounces(
-    ...     Record("microphone", np.zeros(48000), 48e3, "Pa"),
-    ...     touches,
-    ...     np.full(4, 1e-5),
-    ...     np.ones(4),
-    ...     np.zeros(0),
-    ...     (),
-    ... )
+    >>> microphone = Record("microphone", np.zeros(48000), 48e3, "Pa")
+    >>> time = np.array([0.0, 0.4, 0.72, 0.976])
+    >>> heard = Bounces(microphone, time, np.full(4, 1e-5), np.ones(4), np.zeros(0), ())
     >>> rebounds = rebounds_of(heard, gravity=9.81)
     >>> (
     ...     rebounds.approach_speed.round(3).tolist(),

@@ -131,22 +131,9 @@ def modal_damping(problem: Problem, body: Literal["sphere", "plate"]) -> Tunable
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> problem = vi.case_of(
-    ...     {
-    ...         "sphere": {
-    ...             "radius": "25 mm",
-    ...             "material": "rock-paper",
-    ...             "model": "elastic",
-    ...             "modes": 5,
-    ...             "damping": 0.02,
-    ...         },
-    ...         "plate": {"material": "rigid"},
-    ...         "drop": {"speed": 1.0},
-    ...         "contact": {"law": "hertz"},
-    ...     }
-    ... ).to_problem()
+    >>> problem = vi.load_case("paper:type2", {"sphere.modes": 5}).to_problem()
     >>> vi.calibration.modal_damping(problem, "sphere").given.tolist()
-    [0.02]
+    [0.01]
     """
     modal_body = getattr(problem, body)
     modes = modal_body.modes

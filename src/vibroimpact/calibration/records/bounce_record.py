@@ -44,15 +44,9 @@ def impacts_in_bounces(
     Examples
     --------
     >>> from vibroimpact.signals.record import Record
-    >>> touches = np.array([0.0, 0.4, 0.72, 0.976])
-    >>> heard = Bounces(
-    ...     Record("microphone", np.zeros(48000), 48e3, "Pa"),
-    ...     touches,
-    ...     np.full(4, 1e-5),
-    ...     np.ones(4),
-    ...     np.zeros(0),
-    ...     (),
-    ... )
+    >>> microphone = Record("microphone", np.zeros(48000), 48e3, "Pa")
+    >>> time = np.array([0.0, 0.4, 0.72, 0.976])
+    >>> heard = Bounces(microphone, time, np.full(4, 1e-5), np.ones(4), np.zeros(0), ())
     >>> found = impacts_in_bounces(heard, gravity=10.0, first_speed=2.5)
     >>> found.speeds.round(3).tolist(), found.wanted["separation_speed"].round(3).tolist()
     ([2.5, 2.0, 1.6], [2.0, 1.6, 1.28])

@@ -73,14 +73,8 @@ class Bounces:
     >>> import numpy as np
     >>> import vibroimpact as vi
     >>> microphone = vi.signals.Record("microphone", np.zeros(48000), 48e3, "Pa")
-    >>> heard = vi.signals.Bounces(
-    ...     microphone,
-    ...     np.array([0.0, 0.4, 0.72, 0.976]),
-    ...     np.full(4, 1e-5),
-    ...     np.ones(4),
-    ...     np.zeros(0),
-    ...     (),
-    ... )
+    >>> time = np.array([0.0, 0.4, 0.72, 0.976])
+    >>> heard = vi.signals.Bounces(microphone, time, np.full(4, 1e-5), np.ones(4), np.zeros(0), ())
     >>> heard.flight.round(3).tolist(), heard.restitution.round(3).tolist()
     ([0.4, 0.32, 0.256], [0.8, 0.8])
     """
