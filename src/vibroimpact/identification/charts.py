@@ -34,10 +34,9 @@ def identification_charts(identification: Identification) -> list[Chart]:
     --------
     >>> import vibroimpact as vi
     >>> case = vi.load_case("signals:coal-gangue", {"plate.modes": 30})
-    >>> signal = vi.simulate(case).signals()["a1"]
-    >>> record = vi.signals.Record("a1", signal.value, signal.sensor.rate, "m/s2")
-    >>> found = vi.identification.identify(case, [record], place=(0.0, 0.0))
-    >>> [chart.name for chart in identification_charts(found)]
+    >>> record = vi.signals.Record("a1", vi.simulate(case).signals()["a1"].value, 25.6e3, "m/s2")
+    >>> identification = vi.identification.identify(case, [record], place=(0.0, 0.0))
+    >>> [chart.name for chart in identification_charts(identification)]
     ['records', 'force']
     """
     makers = {"records": _records_chart, "force": _force_chart}

@@ -81,8 +81,7 @@ class Identification(Reported, reported_in="vibroimpact.identification.report"):
     --------
     >>> import vibroimpact as vi
     >>> case = vi.load_case("signals:coal-gangue", {"plate.modes": 30})
-    >>> signal = vi.simulate(case).signals()["a1"]
-    >>> record = vi.signals.Record("a1", signal.value, signal.sensor.rate, "m/s2")
+    >>> record = vi.signals.Record("a1", vi.simulate(case).signals()["a1"].value, 25.6e3, "m/s2")
     >>> found = vi.identification.identify(case, [record], place=(0.0, 0.0))
     >>> round(found.estimates["radius_m"].value, 3), found.estimates["radius_m"].interval[0] < 0.025
     (0.025, True)

@@ -37,10 +37,9 @@ def correlation_charts(correlation: Correlation) -> list[Chart]:
     --------
     >>> import vibroimpact as vi
     >>> case = vi.load_case("signals:coal-gangue", {"plate.modes": 10})
-    >>> signal = vi.simulate(case).signals()["a1"]
-    >>> record = vi.signals.Record("a1", signal.value, signal.sensor.rate, "m/s2")
-    >>> found = vi.test_analysis.correlate(case, [record], window=0.05)
-    >>> [chart.name for chart in correlation_charts(found)]
+    >>> record = vi.signals.Record("a1", vi.simulate(case).signals()["a1"].value, 25.6e3, "m/s2")
+    >>> correlation = vi.test_analysis.correlate(case, [record], window=0.05)
+    >>> [chart.name for chart in correlation_charts(correlation)]
     ['overlay', 'responses', 'frac', 'damping']
     """
     makers = {

@@ -103,8 +103,7 @@ class Correlation(Reported, reported_in="vibroimpact.test_analysis.report"):
     --------
     >>> import vibroimpact as vi
     >>> case = vi.load_case("signals:coal-gangue", {"plate.modes": 10})
-    >>> signal = vi.simulate(case).signals()["a1"]
-    >>> record = vi.signals.Record("a1", signal.value, signal.sensor.rate, "m/s2")
+    >>> record = vi.signals.Record("a1", vi.simulate(case).signals()["a1"].value, 25.6e3, "m/s2")
     >>> found = vi.test_analysis.correlate(case, [record], window=0.05)
     >>> found.sensors[0].name, round(float(found.frac[0]), 3)
     ('a1', 0.999)
@@ -204,28 +203,12 @@ def correlate(
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> plate = {
-    ...     "size": [0.3, 0.3, 0.02],
-    ...     "material": "steel",
-    ...     "model": "elastic",
-    ...     "modes": 10,
-    ...     "supports": "clamped",
-    ...     "damping": 0.01,
-    ... }
-    >>> case = vi.case_of(
-    ...     {
-    ...         "sphere": {"radius": 0.02, "material": "steel"},
-    ...         "plate": plate,
-    ...         "drop": {"speed": 1.0, "position": [0.02, 0.01]},
-    ...         "contact": {"law": "hertz"},
-    ...         "run": {"duration": 0.1},
-    ...         "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
-    ...     }
-    ... )
-    >>> signal = vi.simulate(case).signals()["a"]
-    >>> found = correlate(case, [Record("a", signal.value, 20e3, "m/s2")], window=0.05)
-    >>> bool(found.relative_residual[0] < 0.01), round(float(found.frac[0]), 4)
-    (True, 1.0)
+    >>> case = vi.load_case("signals:coal-gangue", {"plate.modes": 10})
+    >>> signal = vi.simulate(case).signals()["a1"]
+    >>> record = Record("a1", signal.value, signal.sensor.rate, "m/s2")
+    >>> found = correlate(case, [record], window=0.05)
+    >>> bool(found.relative_residual[0] < 0.1), round(float(found.frac[0]), 3)
+    (True, 0.999)
     """
     problem = plate_problem(case, progress)
     records = [without_baseline(record) for record in records]

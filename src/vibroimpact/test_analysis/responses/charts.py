@@ -39,8 +39,8 @@ def response_charts(correlation: ResponseCorrelation) -> list[Chart]:
     >>> import vibroimpact as vi
     >>> case = vi.load_case("signals:coal-gangue", {"plate.modes": 10})
     >>> measured = vi.test_analysis.responses_of_case(case, np.arange(50.0, 400.0))
-    >>> found = vi.test_analysis.correlate_responses(case, measured)
-    >>> [chart.name for chart in response_charts(found)]
+    >>> correlation = vi.test_analysis.correlate_responses(case, measured)
+    >>> [chart.name for chart in response_charts(correlation)]
     ['responses', 'frac', 'damping']
     """
     makers = {
