@@ -12,6 +12,7 @@ from vibroimpact.cli.shared import (
     Force,
     Json,
     app,
+    output_folder,
     progress_of,
     quantity_in,
     save_and_show,
@@ -30,12 +31,7 @@ def bound(
             help="A study with classes, or the folder of a data set.",
         ),
     ],
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-bound."
-        ),
-    ] = None,
+    output: Annotated[Path | None, output_folder("STUDY-bound")] = None,
     samples: Annotated[
         int,
         typer.Option("--samples", metavar="N", min=100, help="Number of falls drawn from a study."),

@@ -18,6 +18,7 @@ from vibroimpact.cli.shared import (
     app,
     exit_on_interrupt,
     note,
+    output_folder,
     progress_of,
     save_and_show,
     settings_of,
@@ -46,12 +47,7 @@ def calibrate(
             ),
         ),
     ],
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", metavar="DIR", help="The folder to make; by default CASE-calibrated."
-        ),
-    ] = None,
+    output: Annotated[Path | None, output_folder("CASE-calibrated")] = None,
     changes: Changes = None,
     channel: Annotated[
         str | None,

@@ -15,6 +15,7 @@ from vibroimpact.cli.shared import (
     Json,
     app,
     names_in,
+    output_folder,
     progress_of,
     save_and_show,
     settings_of,
@@ -53,12 +54,7 @@ def compare(
             "without gravity and losses in a liquid.",
         ),
     ] = None,
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", metavar="DIR", help="The folder to make; by default CASE-compared."
-        ),
-    ] = None,
+    output: Annotated[Path | None, output_folder("CASE-compared")] = None,
     figures: Figures = False,
     force: Force = False,
     as_json: Json = False,

@@ -17,6 +17,7 @@ from vibroimpact.cli.shared import (
     Force,
     Json,
     app,
+    output_folder,
     pair_in,
     progress_of,
     quantity_in,
@@ -45,12 +46,7 @@ def correlate(
             "with responses.",
         ),
     ],
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", metavar="DIR", help="The folder to make; by default CASE-correlated."
-        ),
-    ] = None,
+    output: Annotated[Path | None, output_folder("CASE-correlated")] = None,
     hammer: Annotated[
         str | None,
         typer.Option(

@@ -20,6 +20,7 @@ from vibroimpact.cli.shared import (
     exit_on_interrupt,
     names_in,
     note,
+    output_folder,
     save_and_show,
     say,
     settings_of,
@@ -177,12 +178,7 @@ def _run(
 @app.command()
 def modes(
     case: CaseArgument,
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", metavar="DIR", help="The folder to make; by default CASE-modes."
-        ),
-    ] = None,
+    output: Annotated[Path | None, output_folder("CASE-modes")] = None,
     measured: Annotated[
         list[Path] | None,
         typer.Option(

@@ -15,6 +15,7 @@ from vibroimpact.cli.shared import (
     Force,
     Json,
     app,
+    output_folder,
     pair_in,
     progress_of,
     quantity_in,
@@ -34,12 +35,7 @@ def identify(
             help="Records of one fall: CSV, WAV, UFF, NetCDF-4 or the folder of a run.",
         ),
     ],
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", metavar="DIR", help="The folder to make; by default CASE-identified."
-        ),
-    ] = None,
+    output: Annotated[Path | None, output_folder("CASE-identified")] = None,
     place: Annotated[
         str | None,
         typer.Option(

@@ -16,6 +16,7 @@ from vibroimpact.cli.shared import (
     app,
     exit_on_interrupt,
     note,
+    output_folder,
     save_and_show,
     stem,
 )
@@ -30,15 +31,7 @@ def recognise(
     dataset: Annotated[
         str, typer.Argument(metavar="DATASET", help="The folder of a data set, or its dataset.nc.")
     ],
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            metavar="DIR",
-            help="The folder to make; by default DATASET-recognised.",
-        ),
-    ] = None,
+    output: Annotated[Path | None, output_folder("DATASET-recognised")] = None,
     model: Annotated[
         Path | None,
         typer.Option(

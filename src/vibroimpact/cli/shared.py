@@ -77,6 +77,13 @@ Figures = Annotated[
 ]
 
 
+def output_folder(default: str) -> Any:
+    """Return the option of the folder that a command makes; `default` is its name without one."""
+    return typer.Option(
+        "-o", "--output", metavar="DIR", help=f"The folder to make; by default {default}."
+    )
+
+
 def _show_version(wanted: bool) -> None:
     if wanted:
         from vibroimpact._version import __version__

@@ -18,6 +18,7 @@ from vibroimpact.cli.shared import (
     fail,
     interrupt_flag,
     note,
+    output_folder,
     quantity_in,
     say,
     show,
@@ -36,12 +37,7 @@ MOST_BYTES_UNCONFIRMED = 10e9
 """Size of the results on disk above which a study must be confirmed [byte]."""
 
 
-Output = Annotated[
-    Path | None,
-    typer.Option(
-        "-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-sweep."
-    ),
-]
+Output = Annotated[Path | None, output_folder("STUDY-sweep")]
 Resume = Annotated[
     bool,
     typer.Option(
@@ -123,12 +119,7 @@ def dataset(
             help="A case with a [sweep] section that has classes.",
         ),
     ],
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-dataset."
-        ),
-    ] = None,
+    output: Annotated[Path | None, output_folder("STUDY-dataset")] = None,
     samples: Annotated[
         int | None,
         typer.Option(
