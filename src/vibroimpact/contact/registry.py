@@ -113,6 +113,17 @@ def find_contact_law(name: str) -> type[ContactLaw]:
     >>> law.name, law.restitution
     ('flores', 0.7)
     """
+    return find_law("contact law", name, contact_laws())
+
+
+def find_law(kind: str, name: str, laws: Mapping[str, type[Law]]) -> type[Law]:
+    """Return the law with a name, of all laws of a kind.
+
+    Raises
+    ------
+    InputError
+        If there is none, or the name is no text; the message names the closest.
+    """
     if not isinstance(name, str):
-        raise InputError(f"a contact law is found by its name, a text, not {name!r}")
-    return find_named("contact law", name, contact_laws(), "laws")
+        raise InputError(f"a {kind} is found by its name, a text, not {name!r}")
+    return find_named(kind, name, laws, "laws")

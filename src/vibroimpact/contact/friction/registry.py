@@ -8,9 +8,7 @@ from collections.abc import Mapping
 from functools import cache
 
 from vibroimpact.contact.friction.law import FrictionLaw
-from vibroimpact.contact.registry import registered_laws
-from vibroimpact.errors import InputError
-from vibroimpact.registry import find_named
+from vibroimpact.contact.registry import find_law, registered_laws
 
 
 @cache
@@ -50,6 +48,4 @@ def find_friction_law(name: str) -> type[FrictionLaw]:
     >>> find_friction_law("mdr").__name__
     'MDR'
     """
-    if not isinstance(name, str):
-        raise InputError(f"a friction law is found by its name, a text, not {name!r}")
-    return find_named("friction law", name, friction_laws(), "laws")
+    return find_law("friction law", name, friction_laws())
