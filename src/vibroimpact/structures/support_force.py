@@ -21,13 +21,11 @@ from vibroimpact.structures.finite_elements.mesh import Mesh
 from vibroimpact.structures.finite_elements.structure import Structure
 from vibroimpact.structures.finite_elements.surface import Side, Spot, place_of
 from vibroimpact.structures.modal_model import ModalModel
-from vibroimpact.structures.plate_compliance import Average
 from vibroimpact.structures.recipe import Recipe, plate_key
-from vibroimpact.structures.static_compliance import responses_to_spread_forces
 from vibroimpact.structures.store import COMPLIANCE, key_of, load_or_compute
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.supports.support import Support
-from vibroimpact.structures.transfer_strain import spread_at_face
+from vibroimpact.structures.transfer_strain import response_at_face
 
 
 @dataclass(frozen=True)
@@ -111,17 +109,13 @@ def computed_support_forces(
 
     Parameters and errors are those of `support_forces`.
     """
-
-    def distribution(place: tuple[float, float], thickness: float) -> Average:
-        return spread_at_face(recipe, thickness)
-
-    structure, _, displacements = responses_to_spread_forces(recipe, [place], side, distribution)
+    structure, displacements = response_at_face(recipe, place, side)
     watched = [support_at(structure, recipe.supports, spot) for spot in spots]
     _refuse_joints(structure, [recipe.supports[number] for number in watched])
     sums = _force_sums(structure, recipe.supports)
     stiffness = np.array([(sums[number] @ structure.stiffness).toarray() for number in watched])
     mass = np.array([(sums[number] @ structure.mass).toarray() for number in watched])
-    return SupportForces(stiffness, mass, stiffness @ displacements[:, 0])
+    return SupportForces(stiffness, mass, stiffness @ displacements)
 
 
 def support_at(structure: Structure, supports: Sequence[Support], spot: Spot) -> int:

@@ -8,6 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.structures.finite_elements.plate_element import shear_factor
+from vibroimpact.structures.finite_elements.structure import Structure
 from vibroimpact.structures.finite_elements.surface import Side
 from vibroimpact.structures.finite_elements.surface_strain import surface_strain
 from vibroimpact.structures.plate_compliance import Average, mean_square
@@ -74,19 +75,30 @@ def computed_strains(
 
     Parameters and errors are those of `transfer_strains`.
     """
-
-    def distribution(place: tuple[float, float], thickness: float) -> Average:
-        return spread_at_face(recipe, thickness)
-
-    structure, _, displacements = responses_to_spread_forces(recipe, [place], side, distribution)
+    structure, displacements = response_at_face(recipe, place, side)
     strains = [
-        surface_strain(structure.mesh, point, face, structure.thickness) @ displacements[:, 0]
+        surface_strain(structure.mesh, point, face, structure.thickness) @ displacements
         for point, face in points
     ]
     return np.array(strains)
 
 
-def spread_at_face(recipe: Recipe, thickness: float) -> Average:
+def response_at_face(
+    recipe: Recipe, place: tuple[float, float], side: Side
+) -> tuple[Structure, Floats]:
+    """Return the bare structure of a held plate, and its displacements under a unit upward force.
+
+    Parameters and errors are those of `transfer_strains`.
+    """
+
+    def distribution(place: tuple[float, float], thickness: float) -> Average:
+        return _spread_at_face(recipe, thickness)
+
+    structure, _, displacements = responses_to_spread_forces(recipe, [place], side, distribution)
+    return structure, displacements[:, 0]
+
+
+def _spread_at_face(recipe: Recipe, thickness: float) -> Average:
     """Return the distribution of a force whose static response is that at the face of a plate.
 
     The response is that of the modes at the face, not of plate theory.
