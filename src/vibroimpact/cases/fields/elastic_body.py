@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, StrictBool, model_validator
 
 from vibroimpact.bodies.ball import mean_density
 from vibroimpact.bodies.rigid_bodies import rigid_sphere
@@ -259,7 +259,13 @@ PlateMeshField = _mesh_field(PlateMeshTable)
 
 ModesField = Annotated[int, Field(ge=1, le=MOST_MODES, strict=True)]
 FrequencyField = Annotated[float, Quantity("Hz", "all modes up to this frequency", Range(above=0))]
-MethodField = Literal["modal", "craig-bampton"]
+ReductionField = Annotated[
+    Literal["modal", "craig-bampton"] | None,
+    Field(description="model reduction of the finite elements; modal by default"),
+]
+AttachmentField = Annotated[
+    StrictBool, Field(description="add a residual attachment mode at the contact point")
+]
 
 _ROUNDED = 1e-3
 """Relative difference of a mass or a moment of inertia from a solid sphere's that is rounding."""

@@ -15,11 +15,12 @@ from vibroimpact.cases.fields.air import AirField
 from vibroimpact.cases.fields.contact import ContactSection, read_contact
 from vibroimpact.cases.fields.damping import DampingField
 from vibroimpact.cases.fields.elastic_body import (
+    AttachmentField,
     BroughtMeshTable,
     FrequencyField,
-    MethodField,
     ModesField,
     PlateMeshField,
+    ReductionField,
     SphereMeshField,
     check_ball,
     check_elastic,
@@ -77,12 +78,8 @@ class SphereSection(Section):
     max_frequency: FrequencyField | None = None
     damping: DampingField = None
     mesh: SphereMeshField = None
-    reduction: MethodField | None = Field(
-        None, description="model reduction of the finite elements; modal by default"
-    )
-    attachment_mode: StrictBool = Field(
-        False, description="add a residual attachment mode at the contact point"
-    )
+    reduction: ReductionField = None
+    attachment_mode: AttachmentField = False
 
     @model_validator(mode="before")
     @classmethod
@@ -145,12 +142,8 @@ class PlateSection(Section):
         None, description="motion of the supports; at rest by default"
     )
     mesh: PlateMeshField = None
-    reduction: MethodField | None = Field(
-        None, description="model reduction of the finite elements; modal by default"
-    )
-    attachment_mode: StrictBool = Field(
-        False, description="add a residual attachment mode at the contact point"
-    )
+    reduction: ReductionField = None
+    attachment_mode: AttachmentField = False
 
     @model_validator(mode="before")
     @classmethod
