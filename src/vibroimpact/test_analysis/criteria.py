@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from vibroimpact.arrays import Complex, Floats
+from vibroimpact.cases.sections.schema import CaseTable
 from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.test_analysis.mode_pairs import ModePair
 
@@ -62,3 +63,15 @@ class Responses(Protocol):
     @property
     def coherence(self) -> Floats | None:
         """Coherence of force and motion, (S, bins); None if it is not known."""
+
+
+class Comparison(Criteria, Responses, Protocol):
+    """A correlation as its report has it."""
+
+    @property
+    def case(self) -> CaseTable:
+        """The case."""
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What is not sure, and why."""

@@ -2,17 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from vibroimpact.cases.build import resolved_case
+from vibroimpact.charts.chart import Chart
 from vibroimpact.files.plain_names import plain_names
+from vibroimpact.files.result_folder import CASE, write_case
 from vibroimpact.quoting import visible
-from vibroimpact.report.report import Block, Code, Explanation, Note, Section, Table, table_of
+from vibroimpact.report.report import (
+    Block,
+    Code,
+    Explanation,
+    Note,
+    Report,
+    Section,
+    Table,
+    table_of,
+)
 from vibroimpact.results.csv_files import write_columns, write_csv
-from vibroimpact.test_analysis.criteria import Criteria, Responses
+from vibroimpact.test_analysis.criteria import Comparison, Criteria, Responses
 from vibroimpact.test_analysis.mode_pairs import ModePair, damping_field
 from vibroimpact.units.display import MISSING, digits
 
@@ -68,6 +81,32 @@ def write_responses(correlation: Responses, path: Path) -> None:
 def write_modes(correlation: Criteria, path: Path) -> None:
     """Write the modes of both."""
     write_csv(mode_table(correlation), list(MODE_COLUMNS), path)
+
+
+def comparison_report(
+    correlation: Comparison,
+    sections: Sequence[Section],
+    charts: Sequence[Chart],
+    summary: Mapping[str, Any],
+    files: Mapping[str, Callable[[Path], object]] | None = None,
+) -> Report:
+    """Return the report of a comparison, whose folder has `responses.csv`, `modes.csv` and
+    `case.toml` beside other files.
+    """
+    return Report(
+        title=f"{correlation.case.name or 'A test'}, test and simulation",
+        sections=sections,
+        charts=charts,
+        warnings=correlation.doubts,
+        files={
+            **(files or {}),
+            "responses.csv": partial(write_responses, correlation),
+            "modes.csv": partial(write_modes, correlation),
+            CASE: partial(write_case, resolved_case(correlation.case)),
+        },
+        summary=summary,
+        provenance="the case is case.toml, beside this page.",
+    )
 
 
 def octave_blocks(criteria: Criteria, compared: str) -> tuple[Table, Note]:

@@ -9,20 +9,17 @@ from typing import Any
 import numpy as np
 
 from vibroimpact._version import __version__
-from vibroimpact.cases.build import resolved_case
 from vibroimpact.files.plain_names import plain_names
-from vibroimpact.files.result_folder import CASE, write_case
 from vibroimpact.quoting import visible
 from vibroimpact.report.report import Explanation, Report, Section, Table, table_of
 from vibroimpact.results.csv_files import write_columns
 from vibroimpact.test_analysis.charts import correlation_charts, what_frac_is_of
 from vibroimpact.test_analysis.correlate import Correlation
 from vibroimpact.test_analysis.criteria_tables import (
+    comparison_report,
     mode_table,
     modes_section,
     octave_blocks,
-    write_modes,
-    write_responses,
 )
 from vibroimpact.test_analysis.mode_pairs import damping_field
 from vibroimpact.units.display import digits
@@ -55,19 +52,12 @@ def report_of(correlation: Correlation) -> Report:
         "records after the end of the force; the intervals include noise alone. Modes are paired "
         "by frequency; mode shapes are not compared.",
     )
-    return Report(
-        title=f"{correlation.case.name or 'A test'}, test and simulation",
-        sections=(agreement, modes),
-        charts=correlation_charts(correlation),
-        warnings=correlation.doubts,
-        files={
-            "overlay.csv": partial(_write_overlay, correlation),
-            "responses.csv": partial(write_responses, correlation),
-            "modes.csv": partial(write_modes, correlation),
-            CASE: partial(write_case, resolved_case(correlation.case)),
-        },
-        summary=_summary(correlation),
-        provenance="the case is case.toml, beside this page.",
+    return comparison_report(
+        correlation,
+        (agreement, modes),
+        correlation_charts(correlation),
+        _summary(correlation),
+        {"overlay.csv": partial(_write_overlay, correlation)},
     )
 
 

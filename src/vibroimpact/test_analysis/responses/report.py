@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from vibroimpact._version import __version__
-from vibroimpact.cases.build import resolved_case
-from vibroimpact.files.result_folder import CASE, write_case
 from vibroimpact.quoting import visible
 from vibroimpact.report.report import Explanation, Report, Section, Table, table_of
 from vibroimpact.test_analysis.criteria_tables import (
+    comparison_report,
     mode_table,
     modes_section,
     octave_blocks,
-    write_modes,
-    write_responses,
 )
 from vibroimpact.test_analysis.mode_pairs import damping_field
 from vibroimpact.test_analysis.responses.charts import WHAT_FRAC_IS_OF, response_charts
@@ -51,18 +47,11 @@ def report_of(correlation: ResponseCorrelation) -> Report:
         "responses together; the intervals include noise alone. Modes are paired by frequency; "
         "mode shapes are not compared.",
     )
-    return Report(
-        title=f"{correlation.case.name or 'A test'}, test and simulation",
-        sections=(agreement, modes),
-        charts=response_charts(correlation),
-        warnings=correlation.doubts,
-        files={
-            "responses.csv": partial(write_responses, correlation),
-            "modes.csv": partial(write_modes, correlation),
-            CASE: partial(write_case, resolved_case(correlation.case)),
-        },
-        summary=_summary(correlation),
-        provenance="the case is case.toml, beside this page.",
+    return comparison_report(
+        correlation,
+        (agreement, modes),
+        response_charts(correlation),
+        _summary(correlation),
     )
 
 
