@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 import vibroimpact as vi
+from contact_forces import force_over_time
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.calibration.contact_law.calibration import Calibration
@@ -218,24 +219,7 @@ def _forces(law: str, value: float) -> tuple[vi.Response, np.ndarray, np.ndarray
         run={"impacts": 5},
     )
     response = vi.simulate(vi.case_of(case))
-    touches, lasting = response.impacts["time_s"], response.impacts["duration_s"]
-    fine = [
-        np.linspace(touch, touch + duration, 1001)
-        for touch, duration in zip(touches, lasting, strict=True)
-    ]
-    time = np.concatenate(
-        [
-            [0.0],
-            *(part for touch in fine for part in ([touch[0] - 1e-9], touch, [touch[-1] + 1e-9])),
-        ]
-    )
-    force = response.at(time)["force_N"]
-    for touch in fine:
-        force[
-            np.isclose(time, touch[0] - 1e-9, rtol=0.0, atol=1e-12)
-            | np.isclose(time, touch[-1] + 1e-9, rtol=0.0, atol=1e-12)
-        ] = 0.0
-    return response, np.append(time, touches[-1] + 0.02), np.append(force, 0.0)
+    return response, *force_over_time(response, 1001)
 
 
 def _force(random: np.random.Generator, stem: Path | None, only: str = "") -> Made:

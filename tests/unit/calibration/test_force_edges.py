@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from contact_forces import force_over_time
 from support import plain_case
 from vibroimpact.calibration.observed.noise import standard_deviations
 from vibroimpact.calibration.observed.observations import Observations
@@ -29,24 +30,7 @@ def forces(law: str) -> tuple[vi.Response, Floats, Floats]:
     response = vi.simulate(
         vi.case_of(plain_case(contact=LAWS[law], drop={"height": 1.0}, run={"impacts": 4}))
     )
-    touches, lasting = response.impacts["time_s"], response.impacts["duration_s"]
-    fine = [
-        np.linspace(touch, touch + duration, 3001)
-        for touch, duration in zip(touches, lasting, strict=True)
-    ]
-    time = np.concatenate(
-        [
-            [0.0],
-            *(part for touch in fine for part in ([touch[0] - 1e-9], touch, [touch[-1] + 1e-9])),
-        ]
-    )
-    force = response.at(time)["force_N"]
-    for touch in fine:
-        force[
-            np.isclose(time, touch[0] - 1e-9, rtol=0.0, atol=1e-12)
-            | np.isclose(time, touch[-1] + 1e-9, rtol=0.0, atol=1e-12)
-        ] = 0.0
-    return response, np.append(time, touches[-1] + 0.02), np.append(force, 0.0)
+    return response, *force_over_time(response, 3001)
 
 
 def seen_in(
