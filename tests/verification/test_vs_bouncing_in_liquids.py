@@ -24,6 +24,7 @@ from scipy.optimize import brentq
 
 import vibroimpact as vi
 from agreement import Against, Agrees
+from bounces_compared import agrees_on_bounces
 from bounces_in_oil import (
     DIAMETER,
     OIL_DENSITY,
@@ -195,33 +196,7 @@ def test_falls_and_bounces_in_water(agrees: Agrees, density: float, radius: floa
     seen = bounces(radius, density, 0.5, restitution, 3, medium=WATER)
     response = vi.simulate(fall(density, radius, WATER, height=0.5, impacts=3))
     found, case = response.impacts, "four spheres in water, three bounces"
-    agrees(
-        case,
-        "time of impact",
-        found["time_s"],
-        seen.touches[:3],
-        unit="s",
-        against=SCIPY,
-        relative=1e-8,
-    )
-    agrees(
-        case,
-        "approach speed",
-        found["approach_speed_m_s"],
-        seen.before[:3],
-        unit="m/s",
-        against=SCIPY,
-        relative=1e-8,
-    )
-    agrees(
-        case,
-        "rebound height",
-        found["rebound_height_m"],
-        seen.tops[:3],
-        unit="m",
-        against=SCIPY,
-        relative=1e-8,
-    )
+    agrees_on_bounces(agrees, case, found, found["rebound_height_m"], seen, SCIPY)
     assert response.energy["closure_relative"] < 1e-12
     begin = response.at(np.array([0.0]))
     assert begin["acceleration_m_s2"][0] == pytest.approx(

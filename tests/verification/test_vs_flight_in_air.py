@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
 from agreement import Against, Agrees
+from bounces_compared import agrees_on_bounces
 from oracles.bouncing_in_air import DENSITY, VISCOSITY, bounces, clift_gauvin
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
@@ -185,34 +186,8 @@ def test_bounces(agrees: Agrees) -> None:
     radius, density, height = 0.013, LIGHT["density"], 1.0
     seen = bounces(radius, density, height, lambda speed: 0.8, 4)
     found = vi.simulate(drop(radius, density, vi.Air(), height=height, impacts=4)).impacts
-    agrees(
-        "four bounces",
-        "time of impact",
-        found["time_s"],
-        seen.touches[:4],
-        unit="s",
-        against=SCIPY,
-        relative=1e-8,
-    )
-    agrees(
-        "four bounces",
-        "approach speed",
-        found["approach_speed_m_s"],
-        seen.before[:4],
-        unit="m/s",
-        against=SCIPY,
-        relative=1e-8,
-    )
     heights = found["rebound_height_m"][: len(seen.tops)]
-    agrees(
-        "four bounces",
-        "rebound height",
-        heights,
-        seen.tops[:4],
-        unit="m",
-        against=SCIPY,
-        relative=1e-8,
-    )
+    agrees_on_bounces(agrees, "four bounces", found, heights, seen, SCIPY)
 
 
 @pytest.mark.parametrize("coefficient", [None, 0.44])
