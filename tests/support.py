@@ -15,6 +15,18 @@ import pytest
 ROOT = Path(__file__).parents[1]
 
 
+COARSE_PLATE = {
+    "model": "elastic",
+    "material": "steel",
+    "size": [0.3, 0.2, 0.01],
+    "modes": 30,
+    "damping": 0.01,
+    "supports": "clamped",
+    "mesh": {"element_size": 0.05},
+}
+"""The plate of a case: an elastic one of few elements."""
+
+
 def plain_case(**changes: object) -> dict:
     """A valid case as a mapping; `section__key=value` changes a key, None removes it."""
     case: dict = {
@@ -35,6 +47,28 @@ def plain_case(**changes: object) -> dict:
         else:
             table[key] = value
     return case
+
+
+def free_plate(mesh: Path) -> dict[str, Any]:
+    """The plate of a case: a free one of steel with the mesh of a file, and two modes."""
+    return {
+        "material": "steel",
+        "model": "elastic",
+        "mesh": str(mesh),
+        "supports": "free",
+        "modes": 2,
+    }
+
+
+def supported_plate(size: Iterable[float], damping: float) -> dict[str, Any]:
+    """The plate of a case: an elastic one of steel, simply supported along its edges."""
+    return {
+        "size": list(size),
+        "material": "steel",
+        "model": "elastic",
+        "supports": "simply-supported",
+        "damping": damping,
+    }
 
 
 def one_in(every: int, values: Iterable[Any], name: Callable[[Any], str] = str) -> list[Any]:

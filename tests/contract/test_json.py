@@ -19,7 +19,7 @@ import pytest
 import tomli_w
 
 import vibroimpact as vi
-from support import plain_case
+from support import COARSE_PLATE, plain_case
 from vibroimpact.cli import main
 from vibroimpact.cli.shared import app
 from vibroimpact.files.json_text import json_text
@@ -27,15 +27,7 @@ from vibroimpact.files.json_text import json_text
 Printed = Callable[..., Any]
 
 ELASTIC = plain_case(
-    plate={
-        "model": "elastic",
-        "material": "steel",
-        "size": [0.3, 0.2, 0.01],
-        "modes": 30,
-        "damping": 0.01,
-        "supports": "clamped",
-        "mesh": {"element_size": 0.05},
-    },
+    plate=COARSE_PLATE,
     drop={"height": 0.1, "position": [0.02, 0.01]},
     sensors=[
         {"name": "a1", "position": [0.1, 0.05], "rate": 20e3, "accelerometer": {"range": 100.0}}

@@ -14,7 +14,7 @@ import pytest
 
 import vibroimpact as vi
 from hostile_runs import failures, number, seed
-from support import plain_case
+from support import free_plate, plain_case
 from vibroimpact.meshes.mesh_file import load_mesh
 from vibroimpact.runs.case_explained import case_explained
 
@@ -364,13 +364,7 @@ def at_work(folder: Path) -> Callable[[Given], None]:
         assert all(
             members.max() < mesh.number_of_elements for members in mesh.element_sets.values()
         )
-        plate = {
-            "material": "steel",
-            "model": "elastic",
-            "mesh": str(file),
-            "supports": "free",
-            "modes": 2,
-        }
+        plate = free_plate(file)
         case = vi.case_of(plain_case(plate=plate, drop={"speed": 1.0, "position": [0.2, 0.2]}))
         case_explained(case)
         vi.compute_modes(case)

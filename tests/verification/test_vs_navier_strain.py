@@ -12,7 +12,7 @@ from scipy.optimize import linear_sum_assignment
 import vibroimpact as vi
 from agreement import Against, Agrees
 from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, rms, sampled
-from support import one_in
+from support import one_in, supported_plate
 from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
 from vibroimpact.structures.recipe import (
@@ -141,11 +141,7 @@ def response_with(frequency: float) -> vi.Response:
     case = {
         "sphere": {"radius": 5e-3, "material": "steel"},
         "plate": {
-            "size": list(SIZE),
-            "material": "steel",
-            "model": "elastic",
-            "supports": "simply-supported",
-            "damping": RATIO,
+            **supported_plate(SIZE, RATIO),
             "max_frequency": frequency,
             "mesh": {"theory": "thin", "element_size": 0.01},
         },

@@ -15,6 +15,7 @@ from scipy.special import j1
 import vibroimpact as vi
 from agreement import Against, Agrees
 from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, rms, sampled
+from support import supported_plate
 from vibroimpact.structures.finite_elements.mesh import Mesh
 from vibroimpact.structures.finite_elements.plate_mesh import plate_mesh
 from vibroimpact.structures.recipe import (
@@ -170,11 +171,7 @@ def response() -> vi.Response:
     case = {
         "sphere": {"radius": 5e-3, "material": "steel"},
         "plate": {
-            "size": list(SIZE),
-            "material": "steel",
-            "model": "elastic",
-            "supports": "simply-supported",
-            "damping": RATIO,
+            **supported_plate(SIZE, RATIO),
             "max_frequency": 50e3,
             "mesh": {"theory": "thin", "element_size": 0.01},
         },

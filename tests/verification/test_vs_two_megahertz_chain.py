@@ -17,6 +17,7 @@ import vibroimpact as vi
 from agreement import Against, Agrees
 from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, rms, sampled, seismic
 from oracles.three_dimensional_plate import Elastic, thickness_modes
+from support import supported_plate
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
 from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 
@@ -50,13 +51,7 @@ def place(thicknesses: float) -> tuple[float, float]:
 def drop_watched(mesh: dict[str, Any], *more: dict[str, Any]) -> vi.Response:
     """A drop on the plate, whose sensors away from the contact are watched, and more of them."""
     sensors = [{"name": name, "position": list(place(apart))} for name, apart in AWAY.items()]
-    plate = {
-        "size": list(SIZE),
-        "material": "steel",
-        "model": "elastic",
-        "supports": "simply-supported",
-        "damping": RATIO,
-    }
+    plate = supported_plate(SIZE, RATIO)
     case = {
         "sphere": {"radius": 5e-3, "material": "steel"},
         "plate": {**plate, "max_frequency": 50e3, "mesh": mesh},

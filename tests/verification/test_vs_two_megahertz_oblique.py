@@ -13,6 +13,7 @@ import pytest
 import vibroimpact as vi
 from agreement import Against, Agrees
 from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, rms, sampled, seismic
+from support import supported_plate
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
 from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
 
@@ -34,13 +35,7 @@ STEP = 1e-5
 @pytest.fixture(scope="module")
 def response() -> vi.Response:
     """Gravity brings the sphere back within a millisecond, some 5 mm farther on."""
-    plate = {
-        "size": list(SIZE),
-        "material": "steel",
-        "model": "elastic",
-        "supports": "simply-supported",
-        "damping": RATIO,
-    }
+    plate = supported_plate(SIZE, RATIO)
     case = {
         "sphere": {"radius": 5e-3, "material": "steel"},
         "plate": {**plate, "max_frequency": 50e3, "mesh": {"theory": "thin"}},

@@ -16,6 +16,7 @@ import pytest
 import vibroimpact as vi
 from agreement import Against, Agrees
 from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, sampled, seismic
+from support import supported_plate
 from vibroimpact.dynamics.sensors.instruments.sensor import Accelerometer, Sensor
 
 AGAINST = Against(
@@ -46,11 +47,7 @@ def response() -> vi.Response:
     case = {
         "sphere": {"radius": 5e-3, "material": "steel"},
         "plate": {
-            "size": list(SIZE),
-            "material": "steel",
-            "model": "elastic",
-            "supports": "simply-supported",
-            "damping": RATIO,
+            **supported_plate(SIZE, RATIO),
             "max_frequency": 50e3,
             "mesh": {"theory": "thin"},
         },

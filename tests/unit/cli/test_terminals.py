@@ -20,7 +20,7 @@ import vibroimpact as vi
 from exported_drops import told_case
 from knock_data import write_knocks
 from studies import study_table
-from support import one_in, plain_case
+from support import COARSE_PLATE, one_in, plain_case
 from vibroimpact.bayes_error.bound import bound_of
 from vibroimpact.calibration.contact_law.calibrate import calibrate
 from vibroimpact.cases.elastic.modes import compute_modes
@@ -54,15 +54,7 @@ _WIDTHS = (60, 80, 120, 160)
 Printed = dict[str, Callable[[int], RenderableType]]
 
 ELASTIC = plain_case(
-    plate={
-        "model": "elastic",
-        "material": "steel",
-        "size": [0.3, 0.2, 0.01],
-        "modes": 30,
-        "damping": 0.01,
-        "supports": "clamped",
-        "mesh": {"element_size": 0.05},
-    },
+    plate=COARSE_PLATE,
     drop={"height": 0.1, "position": [0.02, 0.01]},
     sensors=[
         {"name": "a1", "position": [0.1, 0.05], "rate": 20e3, "accelerometer": {"range": 100.0}},

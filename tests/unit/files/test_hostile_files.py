@@ -11,7 +11,7 @@ import pytest
 
 import vibroimpact as vi
 from hostile_runs import attack
-from support import plain_case
+from support import free_plate, plain_case
 from vibroimpact.calibration.calibrate_case import calibration_of
 from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.measurements.header_cells import name_and_unit
@@ -100,13 +100,7 @@ def test_a_plate_that_is_a_mesh_needs_no_size_to_be_explained(tmp_path: Path) ->
     """`check` looks for the edges of the plate, and a mesh says nothing of them."""
     file = tmp_path / "plate.inp"
     vi.meshes.write_abaqus(box_mesh((0.52, 0.42, 0.008), (4, 3, 1)), file)
-    plate = {
-        "material": "steel",
-        "model": "elastic",
-        "mesh": str(file),
-        "supports": "free",
-        "modes": 2,
-    }
+    plate = free_plate(file)
     case_explained(vi.case_of(plain_case(plate=plate)))
 
 
@@ -115,13 +109,7 @@ def test_faces_without_area_are_told_without_a_warning(tmp_path: Path) -> None:
     file.write_text(
         "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n5,2,0,0\n*ELEMENT,TYPE=C3D4\n1,1,2,3,4\n2,1,2,5,4\n"
     )
-    plate = {
-        "material": "steel",
-        "model": "elastic",
-        "mesh": str(file),
-        "supports": "free",
-        "modes": 2,
-    }
+    plate = free_plate(file)
     case = vi.case_of(plain_case(plate=plate, drop={"speed": 1.0, "position": [0.2, 0.2]}))
     for use in (case_explained, vi.compute_modes):
         with pytest.raises(vi.InputError, match=r"1 of \d \w+ elements are inverted or folded"):
