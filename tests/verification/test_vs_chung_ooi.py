@@ -49,6 +49,22 @@ SYMMETRY = Against(
 )
 
 
+TEST_1 = (274.113e-6, 10696.9, 40.3395e-6)
+TEST_2 = (49.7172e-6, 11369.9, 731.657e-6)
+"""Maximum indentation [m], maximum contact force [N] and contact duration [s]."""
+
+
+def agrees_with_hertz(
+    agrees: Agrees, case: str, impacts: dict, expected: tuple[float, float, float]
+) -> None:
+    """Compare an impact with the values of Hertz's closed form."""
+    depth, force, duration = expected
+    depths = impacts["max_indentation_m"]
+    agrees(case, "maximum indentation", depths, depth, unit="m", relative=1e-5)
+    agrees(case, "maximum contact force", impacts["max_force_N"], force, unit="N", relative=1e-5)
+    agrees(case, "contact duration", impacts["duration_s"], duration, unit="s", relative=1e-5)
+
+
 def impact(mass: float, stiffness: float, speed: float) -> dict:
     ball = vi.Body(mass=mass, contact_offset=0.01)
     problem = vi.Problem(
@@ -67,30 +83,7 @@ def test_1_two_identical_glass_spheres(agrees: Agrees) -> None:
     mass = 4 / 3 * math.pi * 0.01**3 * glass.density
     # two equal spheres at +-10 m/s: half the mass, half the radius, 20 m/s
     row = impact(mass / 2, hertz_stiffness(effective_modulus(glass, glass), 0.005), 20.0)
-    agrees(
-        "test 1, glass spheres, modelled as a drop",
-        "maximum indentation",
-        row["max_indentation_m"],
-        274.113e-6,
-        unit="m",
-        relative=1e-5,
-    )
-    agrees(
-        "test 1, glass spheres, modelled as a drop",
-        "maximum contact force",
-        row["max_force_N"],
-        10696.9,
-        unit="N",
-        relative=1e-5,
-    )
-    agrees(
-        "test 1, glass spheres, modelled as a drop",
-        "contact duration",
-        row["duration_s"],
-        40.3395e-6,
-        unit="s",
-        relative=1e-5,
-    )
+    agrees_with_hertz(agrees, "test 1, glass spheres, modelled as a drop", row, TEST_1)
 
 
 def test_1_as_it_is_meant(agrees: Agrees) -> None:
@@ -108,30 +101,7 @@ def test_1_as_it_is_meant(agrees: Agrees) -> None:
     response = vi.simulate_system(
         vi.System(bodies=spheres, contacts={"contact": contact}), duration=1e-4
     )
-    agrees(
-        "test 1, modelled as two bodies",
-        "maximum indentation",
-        response.impacts["max_indentation_m"],
-        274.113e-6,
-        unit="m",
-        relative=1e-5,
-    )
-    agrees(
-        "test 1, modelled as two bodies",
-        "maximum contact force",
-        response.impacts["max_force_N"],
-        10696.9,
-        unit="N",
-        relative=1e-5,
-    )
-    agrees(
-        "test 1, modelled as two bodies",
-        "contact duration",
-        response.impacts["duration_s"],
-        40.3395e-6,
-        unit="s",
-        relative=1e-5,
-    )
+    agrees_with_hertz(agrees, "test 1, modelled as two bodies", response.impacts, TEST_1)
     for name, speed in (("left", -10.0), ("right", 10.0)):
         assert response.at(1e-4)[name].velocity[0] == pytest.approx(speed, rel=1e-12)
 
@@ -150,30 +120,7 @@ def test_1_from_a_case(agrees: Agrees) -> None:
         }
     )
     response = vi.simulate(case)
-    agrees(
-        "test 1, modelled by a case file",
-        "maximum indentation",
-        response.impacts["max_indentation_m"],
-        274.113e-6,
-        unit="m",
-        relative=1e-5,
-    )
-    agrees(
-        "test 1, modelled by a case file",
-        "maximum contact force",
-        response.impacts["max_force_N"],
-        10696.9,
-        unit="N",
-        relative=1e-5,
-    )
-    agrees(
-        "test 1, modelled by a case file",
-        "contact duration",
-        response.impacts["duration_s"],
-        40.3395e-6,
-        unit="s",
-        relative=1e-5,
-    )
+    agrees_with_hertz(agrees, "test 1, modelled by a case file", response.impacts, TEST_1)
     end = response.at(response.end_time)  # equal spheres exchange their velocities
     assert end["velocity_m_s"] == pytest.approx([0.0], abs=1e-9)
     assert end["plate_velocity_m_s"] == pytest.approx([-20.0], rel=1e-12)
@@ -191,30 +138,7 @@ def test_2_as_it_is_meant(agrees: Agrees) -> None:
     response = vi.simulate_system(
         vi.System(bodies=bodies, contacts={"contact": contact}), duration=1e-3
     )
-    agrees(
-        "test 2, modelled as two bodies",
-        "maximum indentation",
-        response.impacts["max_indentation_m"],
-        49.7172e-6,
-        unit="m",
-        relative=1e-5,
-    )
-    agrees(
-        "test 2, modelled as two bodies",
-        "maximum contact force",
-        response.impacts["max_force_N"],
-        11369.9,
-        unit="N",
-        relative=1e-5,
-    )
-    agrees(
-        "test 2, modelled as two bodies",
-        "contact duration",
-        response.impacts["duration_s"],
-        731.657e-6,
-        unit="s",
-        relative=1e-5,
-    )
+    agrees_with_hertz(agrees, "test 2, modelled as two bodies", response.impacts, TEST_2)
 
 
 def test_2_aluminium_sphere_on_a_rigid_wall(agrees: Agrees) -> None:
@@ -228,30 +152,7 @@ def test_2_aluminium_sphere_on_a_rigid_wall(agrees: Agrees) -> None:
         }
     )
     row = vi.simulate(case).impacts
-    agrees(
-        "test 2, modelled by a case file",
-        "maximum indentation",
-        row["max_indentation_m"],
-        49.7172e-6,
-        unit="m",
-        relative=1e-5,
-    )
-    agrees(
-        "test 2, modelled by a case file",
-        "maximum contact force",
-        row["max_force_N"],
-        11369.9,
-        unit="N",
-        relative=1e-5,
-    )
-    agrees(
-        "test 2, modelled by a case file",
-        "contact duration",
-        row["duration_s"],
-        731.657e-6,
-        unit="s",
-        relative=1e-5,
-    )
+    agrees_with_hertz(agrees, "test 2, modelled by a case file", row, TEST_2)
 
 
 FINITE_ELEMENTS_5 = (

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -15,6 +15,7 @@ from scipy.integrate import solve_ivp
 import vibroimpact as vi
 from agreement import Against, Agrees
 from turning_history import by_turning_points
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.core.tangential_history import history_after
 from vibroimpact.dynamics.oblique.tangential_history import tangential_history
 from vibroimpact.dynamics.vibrating.drop_system import slices_of
@@ -308,16 +309,31 @@ def test_moments_of_a_contact_that_slides(name: str) -> None:
         assert 0.999 < row["spin_z_after_rad_s"] < 1.0
 
 
-@pytest.mark.parametrize("spin", [(20.0, -30.0, 400.0), (0.0, 0.0, 0.3), (-100.0, 60.0, 0.0)])
-def test_momentum_of_a_free_plate_that_moments_turn(
-    agrees: Agrees, spin: tuple[float, float, float]
-) -> None:
-    """Momentum and angular momentum of sphere and plate together stay, to 1e-9, with
-    rolling resistance and twisting friction.
-    """
+class FreePlateImpact(NamedTuple):
+    """An oblique impact of a sphere on a free plate, without gravity."""
+
+    problem: vi.Problem
+    response: vi.Response
+    row: dict[str, float]
+    """What the table of impacts says of it."""
+    modal_speed: Floats
+    """Speeds of the plate's modes at release."""
+    impulse: Floats
+    """Change of the sphere's momentum along x, y and z [N s]."""
+    spun: Floats
+    """Change of the sphere's angular momentum about its centre [N m s]."""
+
+
+FREE_RADIUS, FREE_SPEED, FREE_ANGLE = 0.02, 2.0, math.radians(35.0)
+"""Radius of the sphere on the free plate [m], its speed [m/s] and its angle from the normal."""
+
+
+def on_a_free_plate(
+    place: tuple[float, float], spin: tuple[float, float, float], friction: dict[str, Any]
+) -> FreePlateImpact:
     case = vi.case_of(
         {
-            "sphere": {"radius": 0.02, "material": "steel"},
+            "sphere": {"radius": FREE_RADIUS, "material": "steel"},
             "plate": {
                 "size": [0.3, 0.2, 0.01],
                 "material": "steel",
@@ -326,51 +342,59 @@ def test_momentum_of_a_free_plate_that_moments_turn(
                 "modes": 30,
             },
             "drop": {
-                "speed": 2.0,
-                "angle": math.radians(35.0),
+                "speed": FREE_SPEED,
+                "angle": FREE_ANGLE,
                 "gravity": 0.0,
-                "position": [0.06, -0.03],
+                "position": list(place),
                 "spin": list(spin),
             },
-            "contact": {
-                "law": "hunt-crossley",
-                "restitution": 0.8,
-                "friction": {"law": "mdr", "coefficient": 0.2, "rolling_coefficient": 0.1},
-            },
+            "contact": {"law": "hunt-crossley", "restitution": 0.8, "friction": friction},
             "run": {"impacts": 1},
         }
     )
     problem = case.to_problem()
     response = vi.simulate(problem)
-    rigid = problem.plate.rigid
-    assert rigid is not None
-    assert rigid.turning is not None
     assert response.bounces is not None
     contact = response.bounces[0].contact
     assert contact is not None
     end = contact.pieces[-1].motion.end  # type: ignore[union-attr]
-    speed = end.velocity[slices_of(problem)[0]]
-    row = {key: values[0] for key, values in response.impacts.items()}
-    mass, radius, down = float(problem.sphere.mass), 0.02, 2.0 * math.cos(math.radians(35.0))
+    row = {name: values[0] for name, values in response.impacts.items()}
+    mass = float(problem.sphere.mass)
     before, after = (
         np.array([row[f"{when}_velocity_{axis}_m_s"] for axis in "xy"])
         for when in ("approach", "separation")
     )
     rising = float(response.at([row["time_s"] + row["duration_s"]])["velocity_m_s"][0])
-    impulse = mass * np.append(after - before, rising + down)
-    scale = mass * 2.0
+    gained = np.array(
+        [row[f"spin_{axis}_after_rad_s"] - row[f"spin_{axis}_before_rad_s"] for axis in "xyz"]
+    )
+    return FreePlateImpact(
+        problem,
+        response,
+        row,
+        modal_speed=end.velocity[slices_of(problem)[0]],
+        impulse=mass * np.append(after - before, rising + FREE_SPEED * math.cos(FREE_ANGLE)),
+        spun=0.4 * mass * FREE_RADIUS**2 * gained,
+    )
+
+
+@pytest.mark.parametrize("spin", [(20.0, -30.0, 400.0), (0.0, 0.0, 0.3), (-100.0, 60.0, 0.0)])
+def test_momentum_of_a_free_plate_that_moments_turn(
+    agrees: Agrees, spin: tuple[float, float, float]
+) -> None:
+    """Momentum and angular momentum of sphere and plate together stay, to 1e-9, with
+    rolling resistance and twisting friction.
+    """
+    rolling = {"law": "mdr", "coefficient": 0.2, "rolling_coefficient": 0.1}
+    problem, response, row, speed, impulse, spun = on_a_free_plate((0.06, -0.03), spin, rolling)
+    rigid = problem.plate.rigid
+    assert rigid is not None
+    assert rigid.turning is not None
+    scale = float(problem.sphere.mass) * FREE_SPEED
     assert speed @ rigid.participation == pytest.approx(-impulse, abs=1e-9 * scale)
     turned = problem.models["plate"].properties.inertia @ (speed @ rigid.turning)
-    spun = (
-        0.4
-        * mass
-        * radius**2
-        * np.array(
-            [row[f"spin_{axis}_after_rad_s"] - row[f"spin_{axis}_before_rad_s"] for axis in "xyz"]
-        )
-    )
-    centre = np.array([0.06, -0.03, 0.005 + radius])
-    balance = (turned + spun + np.cross(centre, impulse)) / (scale * radius)
+    centre = np.array([0.06, -0.03, 0.005 + FREE_RADIUS])
+    balance = (turned + spun + np.cross(centre, impulse)) / (scale * FREE_RADIUS)
     agrees(
         "free plate rotated by contact moments",
         "balance of angular momentum, normalized by m v R",
@@ -380,10 +404,10 @@ def test_momentum_of_a_free_plate_that_moments_turn(
         absolute=1e-9,
     )
     # the moments are what friction at the place of contact does not explain
-    moments = spun - np.cross([0.0, 0.0, -radius], impulse)
-    rolls = np.hypot(*moments[:2]) / (0.1 * radius * impulse[2])
+    moments = spun - np.cross([0.0, 0.0, -FREE_RADIUS], impulse)
+    rolls = np.hypot(*moments[:2]) / (0.1 * FREE_RADIUS * impulse[2])
     assert rolls == pytest.approx(1.0, abs=2e-2) if spin[2] == 0.0 else 0.0 < rolls < 1.0 + 1e-6
-    assert moments[2] * (spin[2] - (speed @ rigid.turning)[2]) < -1e-7 * scale * radius
+    assert moments[2] * (spin[2] - (speed @ rigid.turning)[2]) < -1e-7 * scale * FREE_RADIUS
     assert abs(response.energy["closure_relative"]) < 1e-9
     assert row["friction_lost_J"] > 0.0
 
@@ -394,50 +418,12 @@ def test_momentum_of_a_free_plate(agrees: Agrees, place: tuple[float, float], la
     """An oblique drop beside the centre of a free plate: momentum and angular momentum of
     both together stay, to 1e-9.
     """
-    case = vi.case_of(
-        {
-            "sphere": {"radius": 0.02, "material": "steel"},
-            "plate": {
-                "size": [0.3, 0.2, 0.01],
-                "material": "steel",
-                "model": "elastic",
-                "supports": "free",
-                "modes": 30,
-            },
-            "drop": {
-                "speed": 2.0,
-                "angle": math.radians(35.0),
-                "gravity": 0.0,
-                "position": list(place),
-                "spin": [20.0, -30.0, 0.0],
-            },
-            "contact": {
-                "law": "hunt-crossley",
-                "restitution": 0.8,
-                "friction": {"law": law, "coefficient": 0.2},
-            },
-            "run": {"impacts": 1},
-        }
-    )
-    problem = case.to_problem()
-    response = vi.simulate(problem)
+    impact = on_a_free_plate(place, (20.0, -30.0, 0.0), {"law": law, "coefficient": 0.2})
+    problem, response, _, speed, impulse, spun = impact
     rigid = problem.plate.rigid
     assert rigid is not None
     assert rigid.along is not None
-    assert response.bounces is not None
-    contact = response.bounces[0].contact
-    assert contact is not None
-    end = contact.pieces[-1].motion.end  # type: ignore[union-attr]
-    speed = end.velocity[slices_of(problem)[0]]
-    row = {name: values[0] for name, values in response.impacts.items()}
-    mass, radius = float(problem.sphere.mass), 0.02
-    before, after = (
-        np.array([row[f"{when}_velocity_{axis}_m_s"] for axis in "xy"])
-        for when in ("approach", "separation")
-    )
-    rising = float(response.at([row["time_s"] + row["duration_s"]])["velocity_m_s"][0])
-    impulse = mass * np.append(after - before, rising + 2.0 * math.cos(math.radians(35.0)))
-    scale = mass * 2.0
+    scale = float(problem.sphere.mass) * FREE_SPEED
     found = (speed @ rigid.participation) / scale
     agrees(
         "free plate, oblique eccentric impact",
@@ -455,11 +441,8 @@ def test_momentum_of_a_free_plate(agrees: Agrees, place: tuple[float, float], la
     moments, axes = np.linalg.eigh(inertia)
     turned = axes @ (np.sqrt(moments) * (speed @ rigid.rotation))
     assert turned == pytest.approx(np.cross(arm, -impulse), abs=1e-9 * scale * 0.15)
-    spin = np.array(
-        [row[f"spin_{axis}_after_rad_s"] - row[f"spin_{axis}_before_rad_s"] for axis in "xyz"]
-    )
-    assert 0.4 * mass * radius**2 * spin == pytest.approx(
-        np.cross([0.0, 0.0, -radius], impulse), abs=1e-9 * scale * radius
+    assert spun == pytest.approx(
+        np.cross([0.0, 0.0, -FREE_RADIUS], impulse), abs=1e-9 * scale * FREE_RADIUS
     )
     assert abs(response.energy["closure_relative"]) < 1e-9
 

@@ -15,6 +15,8 @@ Source: Zener, C. (1941). The intrinsic inelasticity of large plates. Phys. Rev.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -108,25 +110,7 @@ def test_restitution(agrees: Agrees, inelasticity: float, restitution: float) ->
 def test_history_of_the_force(agrees: Agrees) -> None:
     """Of the equation of Zener itself: peak, duration, and its course, as a part of the peak."""
     inelasticity = 0.1768
-
-    def slopes(_: float, y: np.ndarray) -> list[float]:
-        root = np.sqrt(max(y[0], 0.0))
-        return [y[1], -root * max(y[0], 0.0) - 1.5 * inelasticity * root * y[1]]
-
-    def apart(_: float, y: np.ndarray) -> float:
-        return float(y[0])
-
-    apart.terminal, apart.direction = True, -1  # type: ignore[attr-defined]
-    exact = solve_ivp(
-        slopes,
-        (0.0, 10.0),
-        [0.0, 1.0],
-        method="DOP853",
-        rtol=1e-10,
-        atol=1e-12,
-        events=apart,
-        dense_output=True,
-    )
+    exact = contact(inelasticity, 10.0, dense_output=True)
     response = plate_response(inelasticity)
     end = float(response.impacts["duration_s"][0]) / TIME
     agrees(
@@ -269,6 +253,11 @@ def test_a_large_plate_of_thin_elements(agrees: Agrees) -> None:
 
 def restitution(inelasticity: float) -> float:
     """Of Zener's equation."""
+    return -float(contact(inelasticity, 20.0).y[1, -1])
+
+
+def contact(inelasticity: float, longest: float, **options: Any) -> Any:
+    """Zener's equation, integrated by SciPy until the sphere leaves."""
 
     def slopes(_: float, y: np.ndarray) -> list[float]:
         root = np.sqrt(max(y[0], 0.0))
@@ -278,8 +267,13 @@ def restitution(inelasticity: float) -> float:
         return float(y[0])
 
     apart.terminal, apart.direction = True, -1  # type: ignore[attr-defined]
-    return -float(
-        solve_ivp(
-            slopes, (0.0, 20.0), [0.0, 1.0], method="DOP853", rtol=1e-10, atol=1e-12, events=apart
-        ).y[1, -1]
+    return solve_ivp(
+        slopes,
+        (0.0, longest),
+        [0.0, 1.0],
+        method="DOP853",
+        rtol=1e-10,
+        atol=1e-12,
+        events=apart,
+        **options,
     )
