@@ -22,6 +22,18 @@ RATE, WINDOW, DELAY = 25600.0, 5e-3, 4e-3
 """Samples per second [Hz]; time that is used, and time from the start to first touch [s]."""
 SENSORS = {"a": (0.17, 0.05), "b": (-0.13, 0.11), "c": (-0.03, -0.14)}
 THICKNESS = 0.010
+FITTED = (
+    "place_x_m",
+    "place_y_m",
+    "radius_m",
+    "speed_m_s",
+    "first_touch_s",
+    "max_force_N",
+    "impulse_N_s",
+)
+"""Estimates from the contact that is fitted to the records."""
+FROM_RECORDS = ("recovered_max_force_N", "recovered_impulse_N_s")
+"""Estimates from the records alone."""
 
 
 def a_case(modes: int = 140, **changed: Any) -> vi.Case:

@@ -14,7 +14,16 @@ import numpy as np
 import pytest
 
 from agreement import Against, Agrees
-from identifying import DELAY, THICKNESS, an_impact, drawn, plate, records_of
+from identifying import (
+    DELAY,
+    FITTED,
+    FROM_RECORDS,
+    THICKNESS,
+    an_impact,
+    drawn,
+    plate,
+    records_of,
+)
 from vibroimpact.identification.identify import identify_on
 
 AGAINST = Against(
@@ -22,18 +31,6 @@ AGAINST = Against(
     "consistency",
     "calibration, identification and studies",
     "tests/identifying.py: estimates against the simulated impacts; no external reference",
-)
-
-
-FROM_RECORDS = ("recovered_max_force_N", "recovered_impulse_N_s")
-FITTED = (
-    "place_x_m",
-    "place_y_m",
-    "radius_m",
-    "speed_m_s",
-    "first_touch_s",
-    "max_force_N",
-    "impulse_N_s",
 )
 
 

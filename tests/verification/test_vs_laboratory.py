@@ -14,19 +14,18 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from identifying import DELAY, LABORATORY, drawn, heard_by, in_laboratory, mounted, records_of
-from vibroimpact.identification.identify import identify_on
-
-FROM_RECORDS = ("recovered_max_force_N", "recovered_impulse_N_s")
-FITTED = (
-    "place_x_m",
-    "place_y_m",
-    "radius_m",
-    "speed_m_s",
-    "first_touch_s",
-    "max_force_N",
-    "impulse_N_s",
+from identifying import (
+    DELAY,
+    FITTED,
+    FROM_RECORDS,
+    LABORATORY,
+    drawn,
+    heard_by,
+    in_laboratory,
+    mounted,
+    records_of,
 )
+from vibroimpact.identification.identify import identify_on
 
 
 @pytest.mark.slow
