@@ -135,20 +135,15 @@ def test_files_in_changes_are_found_from_where_the_command_runs(
     assert section.mesh.file == str(tmp_path / "ball.bdf")
 
 
+ONE_IMPACT = ("paper:type1-theory", "-o", "out", "--set", "run.impacts=1")
+"""The case and the folder of a command, and the first of its changes."""
+
+
 def test_a_run_takes_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    arguments = [
-        "run",
-        "paper:type1-theory",
-        "-o",
-        "out",
-        "--set",
-        "run.impacts=1",
-        "--set",
-        "drop.height=1 m",
-    ]
+    arguments = ["run", *ONE_IMPACT, "--set", "drop.height=1 m"]
     assert command(monkeypatch, capsys, *arguments)[0] == 0
     result = vi.load_result("out")
     assert len(result.impacts["impact"]) == 1
@@ -159,16 +154,7 @@ def test_a_calibration_takes_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    arguments = [
-        "calibrate",
-        "paper:type1-theory",
-        "-o",
-        "out",
-        "--set",
-        "run.impacts=1",
-        "--set",
-        "calibrate.target={restitution=0.7}",
-    ]
+    arguments = ["calibrate", *ONE_IMPACT, "--set", "calibrate.target={restitution=0.7}"]
     assert command(monkeypatch, capsys, *arguments, "--set", "calibrate.model=adams-impact")[0] == 0
     assert len(json.loads((tmp_path / "out" / "calibration.json").read_text())["impacts"]) == 1
     assert vi.simulate(vi.load_case(tmp_path / "out" / "case.toml")).impacts[

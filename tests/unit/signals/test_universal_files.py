@@ -12,6 +12,7 @@ import pyuff
 
 import vibroimpact as vi
 from support import plain_case
+from thin_plate_responses import HEADER
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.calibration.contact_law.calibration import Calibration
 from vibroimpact.exporting.export_result import export_result
@@ -29,19 +30,6 @@ SI = {
     "force": 1.0,
     "temp": 1.0,
     "temp_offset": 273.15,
-}
-DATES = {
-    f"{what}_{when}": ""
-    for what in ("date", "time")
-    for when in ("db_created", "db_saved", "file_written")
-}
-HEADER = {
-    "type": 151,
-    "model_name": "m",
-    "description": "d",
-    "db_app": "a",
-    "program": "p",
-    **DATES,
 }
 VALUES = np.array([1.0, -2.5, 3.0e5, -4.0e-5, 5.0, 6.5, -7.25])
 TIME = 1e-3 * np.arange(7)

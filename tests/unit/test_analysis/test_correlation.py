@@ -574,17 +574,8 @@ def test_the_command(command: Callable[..., tuple[int, str, str]]) -> None:
     np.savetxt(
         "tap.csv", table, delimiter=",", header="time [s],hammer [N],a1 [g],a2 [g]", comments=""
     )
-    code, out, _ = command(
-        "correlate",
-        "case.toml",
-        "tap.csv",
-        "--hammer",
-        "hammer",
-        "-o",
-        "found",
-        "--band",
-        "300 Hz, 1.7 kHz",
-    )
+    hammer = ("--hammer", "hammer", "--band", "300 Hz, 1.7 kHz")
+    code, out, _ = command("correlate", "case.toml", "tap.csv", "-o", "found", *hammer)
     assert code == 0
     assert "FRAC of the frequency responses to the force, by H1 from 1 hit" in out
     assert "damping = { frequencies = [" in out
@@ -603,18 +594,7 @@ def test_the_command(command: Callable[..., tuple[int, str, str]]) -> None:
         for name in ("measured", "simulated", "residual")
     ]
     assert parts[0] - parts[1] == pytest.approx(parts[2], abs=1e-6)
-    code, out, _ = command(
-        "correlate",
-        "case.toml",
-        "tap.csv",
-        "--hammer",
-        "hammer",
-        "-o",
-        "again",
-        "--band",
-        "300 Hz, 1.7 kHz",
-        "--json",
-    )
+    code, out, _ = command("correlate", "case.toml", "tap.csv", "-o", "again", *hammer, "--json")
     assert code == 0
     told = json.loads(out)
     assert told["records"]["a1"]["frac"] > 0.999
@@ -625,17 +605,7 @@ def test_the_command(command: Callable[..., tuple[int, str, str]]) -> None:
     np.savetxt("bare.txt", table)
     columns = ("--columns", "time=s,hammer=N,a1=g,a2=g")
     code, out, _ = command(
-        "correlate",
-        "case.toml",
-        "bare.txt",
-        *columns,
-        "--hammer",
-        "hammer",
-        "-o",
-        "bare",
-        "--band",
-        "300 Hz, 1.7 kHz",
-        "--json",
+        "correlate", "case.toml", "bare.txt", *columns, "-o", "bare", *hammer, "--json"
     )
     assert code == 0
     assert json.loads(out)["records"] == told["records"]
