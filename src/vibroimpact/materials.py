@@ -32,6 +32,7 @@ _RANGES = {
     "yield_strength": Range(above=0),
     "compressive_strength": Range(above=0),
     "tensile_strength": Range(above=0),
+    "hardness": Range(above=0),
     "loss_factor": Range(at_least=0),
 }
 
@@ -54,6 +55,8 @@ class Material:
         Loss factor of vibration [-], >= 0.
     compressive_strength, tensile_strength : float, optional
         Strength of a brittle material in uniaxial compression and tension [Pa], > 0.
+    hardness : float, optional
+        Vickers hardness [Pa], > 0: the Vickers number times 9.80665 MPa. See Notes.
     name, description, note : str
         Name in the library, description, and a note on the reliability of the values.
     sources : mapping of str to str
@@ -63,6 +66,17 @@ class Material:
     ------
     InputError
         If a value is outside its range.
+
+    Notes
+    -----
+    Nothing is computed from the hardness. It is for those who estimate parameters of contact laws
+    with plastic yield from it: the hardness of a metal is about 2.8 times its flow stress [1]_, at
+    a strain of some 8 %. This is close to the yield strength of a hardened steel, and above that of
+    a metal that hardens under the indenter.
+
+    References
+    ----------
+    .. [1] Tabor, D. (1951). The Hardness of Metals. Clarendon Press, Oxford.
 
     Examples
     --------
@@ -78,6 +92,8 @@ class Material:
     loss_factor: float | None = None
     compressive_strength: float | None = None
     tensile_strength: float | None = None
+    # by keyword only, which leaves the positions of the others
+    hardness: float | None = field(default=None, kw_only=True)
     name: str = ""
     description: str = ""
     note: str = ""

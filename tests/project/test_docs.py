@@ -499,7 +499,13 @@ def test_materials_have_a_source_for_each_number() -> None:
     for name, material in library.items():
         assert material.description, name
         numbers = {"density", "youngs_modulus", "poissons_ratio"}
-        optional = ("yield_strength", "compressive_strength", "tensile_strength", "loss_factor")
+        optional = (
+            "yield_strength",
+            "compressive_strength",
+            "tensile_strength",
+            "hardness",
+            "loss_factor",
+        )
         numbers |= {key for key in optional if getattr(material, key) is not None}
         assert set(material.sources) == numbers, name
         assert all(len(source) > 15 for source in material.sources.values()), name

@@ -18,6 +18,7 @@ _UNITS = {
     "yield_strength": "Pa",
     "compressive_strength": "Pa",
     "tensile_strength": "Pa",
+    "hardness": "Pa",
     "loss_factor": "",
 }
 

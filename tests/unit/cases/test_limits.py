@@ -444,6 +444,23 @@ def test_materials_take_strengths_and_refuse_what_is_none() -> None:
         vi.case_of(quiet(sphere__material={**ROCK, "tensile_strength": -12}))
 
 
+def test_hardness_is_read_as_a_pressure_and_changes_nothing() -> None:
+    plain = vi.case_of(quiet())
+    given = [
+        vi.case_of(quiet(sphere__material={**ROCK, "hardness": hardness}))
+        for hardness in (1e9, "1 GPa", "1000 MPa")
+    ]
+    assert [case.sphere.material.hardness for case in given] == [1e9, 1e9, 1e9]
+    assert resolved_case(given[0])["sphere"]["material"]["hardness"] == 1e9
+    assert resolved_case(vi.case_of(resolved_case(given[0]))) == resolved_case(given[0])
+    assert told(quiet(sphere__material={**ROCK, "hardness": 1e9})) == told(
+        quiet(sphere__material=ROCK)
+    )
+    assert plain.sphere.material.hardness is None
+    with pytest.raises(vi.InputError, match=r"sphere\.material\.hardness: 0 is not allowed"):
+        vi.case_of(quiet(sphere__material={**ROCK, "hardness": 0}))
+
+
 # studies -----------------------------------------------------------------------------------------
 
 

@@ -34,6 +34,7 @@ class InlineMaterial(Section):
         Annotated[float, Quantity("Pa", "tensile strength of a brittle material", Range(above=0))]
         | None
     ) = None
+    hardness: Annotated[float, Quantity("Pa", "Vickers hardness", Range(above=0))] | None = None
     loss_factor: Annotated[float, Quantity("", "loss factor", Range(at_least=0))] | None = None
     name: Name = ""
 

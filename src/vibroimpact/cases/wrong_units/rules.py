@@ -22,6 +22,7 @@ _GRAVITY = 9.8  # m/s^2, for the weight on springs, independent of drop.gravity
 
 _DENSITY = (10.0, 25_000.0)  # kg/m^3: foams; osmium has 22 590
 _MODULUS = (2e4, 2e12)  # Pa: gels; diamond has 1.1e12
+_HARDEST = 1.5e11  # Pa: diamond has up to 1.2e11
 _LIGHTEST = 3.5e8  # largest Young's modulus over density [m^2/s^2]: diamond has 3e8
 _SOFTEST = ((1400.0, _MODULUS[0]), (2300.0, 1e6), (4000.0, 1e8), (math.inf, 2e9))
 """Upper end of a range of densities [kg/m^3], and its least Young's modulus [Pa]: gels and rubber;
@@ -77,6 +78,21 @@ def strength(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRang
     return PlausibleRange(
         low=float(np.fmax(1e3, 5e-6 * stiff)),
         below="is very weak for a material as stiff",
+    )
+
+
+def hardness(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of a Vickers hardness for the stiffness of the material.
+
+    A number of the Vickers scale, which is in kgf/mm^2, is recognised.
+    """
+    stiff = _nan_outside(table.get("youngs_modulus", math.nan), _MODULUS)
+    return PlausibleRange(
+        low=float(np.fmax(1e3, 1e-5 * stiff)),
+        high=_HARDEST,
+        below="is very soft for a material as stiff",
+        above="is harder than diamond",
+        reference=0.01 * stiff,
     )
 
 

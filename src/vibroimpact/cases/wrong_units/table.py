@@ -17,6 +17,7 @@ _FREQUENCIES = ("kHz", "MHz")
 _FORCES = ("kN", "MN")
 _MODULI = ("GPa", "MPa", "kPa")
 _STRENGTHS = ("MPa", "GPa", "kPa")
+_HARDNESSES = ("kgf/mm^2", "GPa", "MPa")
 _STIFFNESSES = ("N/mm", "kN/mm", "kN/m", "MN/m")
 _LAW_STIFFNESSES = ("N/mm^n", "kN/mm^n", "kN/m^n", "MN/m^n", "GN/m^n")
 _DAMPINGS = ("N s/mm", "kN s/m")
@@ -32,6 +33,7 @@ def _material(at: str) -> tuple[CheckedKey, ...]:
             CheckedKey(f"{at}.{name}_strength", "Pa", _STRENGTHS, rules.strength)
             for name in ("yield", "compressive", "tensile")
         ),
+        CheckedKey(f"{at}.hardness", "Pa", _HARDNESSES, rules.hardness),
     )
 
 
