@@ -222,10 +222,11 @@ def choices(names: Iterable[str], given: str, command: str = "") -> str:
     return f"{listed(known, given, command)}.{did_you_mean(given, known)}"
 
 
-def did_you_mean(word: str, known: Iterable[str]) -> str:
+def did_you_mean(word: str, known: Iterable[str], cutoff: float = 0.6) -> str:
     """Return " Did you mean ...?" for the known word closest to a word, or "".
 
-    It is "" if no known word is close, or the word itself is known.
+    It is "" if no known word is close, or the word itself is known. The cutoff is the least ratio
+    of similarity, from 0 to 1.
 
     Examples
     --------
@@ -234,7 +235,7 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     >>> did_you_mean("xyz", ["radius", "material"])
     ''
     """
-    close = get_close_matches(word[:_LONGEST_WORD], list(known), n=1, cutoff=0.6)
+    close = get_close_matches(word[:_LONGEST_WORD], list(known), n=1, cutoff=cutoff)
     if not close or close[0] == word:
         return ""
     return f' Did you mean "{close[0]}"?'

@@ -180,7 +180,8 @@ def _did_you_mean(name: str) -> str:
     name_in_library = _names_in_library().get(_plain(name))
     if name_in_library:
         return f' Did you mean "{name_in_library}"?'
-    return did_you_mean(name.lower(), material_library())
+    # a wrong material is worse than none: copper is not meant by "cork", nor pyrite by "ptfe"
+    return did_you_mean(name.lower(), material_library(), cutoff=0.65)
 
 
 def find_material(name: str) -> Material:
