@@ -23,6 +23,21 @@ NAMES = {
     "Al2O3": "alumina",
     "WC": "tungsten-carbide",
     "graniet": "granite",
+    "100Cr6": "bearing-steel",
+    "AISI 52100": "bearing-steel",
+    "S355": "steel-s355",
+    "16Mn": "steel-q345",
+    "Q345": "steel-q345",
+    "42CrMo4": "steel-42crmo4",
+    "AISI 4140": "steel-42crmo4",
+    "Hardox 450": "wear-resistant-steel",
+    "6061-T6": "aluminium-6061-t6",
+    "6082": "aluminium-6082-t6",
+    "PA6": "polyamide-6",
+    "PA66": "nylon",
+    "rubber": "natural-rubber",
+    "PU": "polyurethane",
+    "FeS2": "pyrite",
 }
 
 
@@ -36,7 +51,7 @@ def test_another_name_leads_to_that_of_the_library(name: str) -> None:
     assert str(raised.value).endswith(f'Did you mean "{NAMES[name]}"?')
 
 
-@pytest.mark.parametrize("name", ["PVC", "PTFE", "rubber", "kryptonite"])
+@pytest.mark.parametrize("name", ["PVC", "PTFE", "cork", "kryptonite"])
 def test_what_the_library_does_not_have_can_be_given_by_numbers(name: str) -> None:
     with pytest.raises(vi.InputError, match="or give its numbers") as raised:
         vi.find_material(name)
