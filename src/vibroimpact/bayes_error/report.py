@@ -54,9 +54,9 @@ def report_of(bound: Bound) -> Report:
         (
             error_table(bound),
             Note(
-                "Without scatter: without that of the amplitude; the noise remains. Remaining: "
-                "standard deviation of the logarithm after the best linear estimate, over that in "
-                "the population."
+                "Without scatter is the error with the noise, but without the scatter of the "
+                "amplitude. Remaining is the part of the standard deviation of the logarithm that "
+                "the best linear estimate leaves."
             ),
             Note(channel_sentences(bound)),
             Note(sampling_sentence(bound)),

@@ -87,6 +87,8 @@ _ERRORS_OF_COLUMNS = {
 _ERRORS_OF_ENERGIES = {"potential_J": REBOUND, "kinetic_J": REBOUND}
 """Those whose error entries of the ledger have, which are what the rebound leaves."""
 
+_LOST = ("energy_lost_J", "plastic_work_J")
+
 _ROUNDING = 1e-12
 """Part of the energy put in up to which an energy is a rounding error."""
 
@@ -115,7 +117,7 @@ def impact_table(result: Result) -> Table:
     """
     number = len(result.impacts["impact"])
     columns = {
-        name: formatted_column(name, result.impacts[name], changes_of(result, name))
+        name: formatted_column(name, _above_rounding(result, name), changes_of(result, name))
         for name in shown_columns(result)
     }
     headings = {name: ALL_IMPACT_COLUMNS[name].label for name in columns}
@@ -130,6 +132,14 @@ def impact_table(result: Result) -> Table:
         shows_views=True,
         short=_table_for_terminal(result, columns),
     )
+
+
+def _above_rounding(result: Result, name: str) -> Floats:
+    """Return a column of the impact table, with zero for energies lost that are rounding errors."""
+    values = result.impacts[name]
+    if name not in _LOST:
+        return values
+    return np.where(np.abs(values) < _ROUNDING * result.energy["input_J"], 0.0, values)
 
 
 def _rows_shown(number: int, most: int, first: int) -> tuple[list[int], Gap | None]:

@@ -193,7 +193,7 @@ def _offset_doubt(record: Record, removed: Removed, largest: float, peak: float)
     if peak:
         share = (
             f"{'up to ' if drifts else ''}{largest / peak:.2g} times the largest magnitude "
-            "of what is left"
+            "of the rest of the record"
         )
     else:
         share = "all that there is"

@@ -147,7 +147,7 @@ def record_of(*touches: float, duration: float = 1.0) -> vi.signals.Record:
         (
             record_of(0.2, 0.5, 0.65, 0.85),
             "of its 4 touches 3 at best have intervals that shrink as those of bounces, as "
-            "any three might",
+            "three touches may have by chance",
         ),
         (
             record_of(0.2, 0.5, 0.65, 0.75, 0.95),

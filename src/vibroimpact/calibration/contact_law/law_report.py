@@ -211,9 +211,9 @@ def given_sentences(calibration: Calibration) -> list[str]:
         if within:
             verdict = ", within the uncertainty of the measurement"
         elif misses:
-            verdict = ": it does not meet the target"
+            verdict = ", and does not meet the target"
         met = abs(calibration.outcomes[name][worst] / wanted[worst] - 1.0) <= _MET
-        best = f"{meets} {'meets' if met else 'comes nearest to'} the target"
+        best = f"{calibration.parameter} = {meets} {'meets' if met else 'comes nearest to'} it"
         sentences.append(
             f"{phrase} is {instead} instead of {asked}, a deviation of "
             f"{_off(off[worst])[0]} %{verdict}. {best}."

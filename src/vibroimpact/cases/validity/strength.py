@@ -31,6 +31,9 @@ _FULLY_PLASTIC = 2.8
 _LIKE_ELASTIC = 0.99
 """Part of the elastic force from which a contact that yields is as an elastic one."""
 
+_STRUCTURAL_STEEL, _BALLS = "steel", "bearing-steel"
+"""Materials of the library: that which a ball is said to be of, and that which it mostly is of."""
+
 _BODIES = ("sphere", "plate")
 
 
@@ -145,7 +148,11 @@ def _strength_sentence(body: str, drop: Conditions, ratio: float) -> str:
             f"{begins}, {_YIELD} times {known}"
         )
     also = _fails_too(body, drop)
-    return f"{_named(body, material)} {verb}{also}: {_meaning(body, drop, name)}; {comparison}"
+    meaning = _meaning(body, drop, name)
+    remedy = ""
+    if body == "sphere" and material.name == _STRUCTURAL_STEEL:
+        remedy = f'; of a ball of a bearing, sphere.material is "{_BALLS}"'
+    return f"{_named(body, material)} {verb}{also}: {meaning}; {comparison}{remedy}"
 
 
 def _fails_too(body: str, drop: Conditions) -> str:
@@ -276,6 +283,6 @@ LIMITS = (
         number=_pressure_ratio,
         sentence=_unknown_sentence,
         group="strength",
-        shown=lambda ratio: f"a peak pressure of {ratio:.2g} of the effective modulus",
+        shown=lambda ratio: f"peak pressure {ratio:.2g} E*",
     ),
 )

@@ -284,7 +284,7 @@ def _chance_doubts(chain: Floats, unexplained: Floats, duration: float) -> tuple
     touch_count = len(chain) + len(unexplained)
     between = np.count_nonzero((unexplained > chain[0]) & (unexplained < chain[-1]))
     if len(chain) == 3:
-        cause = "as any three might; among other touches it takes four"
+        cause = "which three touches may have by chance; among other touches four are needed"
     elif _chains_by_chance(chain, touch_count, duration) > _CHANCE:
         cause = "as some of as many touches at random times would"
     elif _BOUNCES_PER_OTHER * between > len(chain):
