@@ -57,6 +57,8 @@ _TINY = 1e-300
 _MOST_ATTEMPTS = 4  # solutions per stretch, until no earlier event is found
 _BEFORE_END = 0.98  # in x: an event beyond is the one at the end
 _AT_END = 1e-12  # relative: an event may lie so far beyond the end of the first solution
+_IMBALANCE = 0.06  # tolerances: error of the balance of energy, over that of the motion
+_ROUGHNESS = 0.1  # tolerances: square of the last Legendre coefficients over the largest
 
 
 @compiled
@@ -83,6 +85,7 @@ def place_at(basis: Basis, time: float) -> float:
 @compiled
 def weights_at(basis: Basis, x: float, weights: Vector) -> None:
     """Write the weights of the start and the nodes in the interpolated value at x."""
+    # barycentric form of Lagrange's interpolation
     total = 0.0
     for node in range(len(weights)):
         distance = x - basis.places[node]
@@ -237,8 +240,8 @@ def balance_of(
         imbalance += work[contact] + histories.dissipated[contact]
     for coordinate in range(len(path.lost)):
         imbalance += path.lost[coordinate]
-    allowed = 0.06 * manner.tolerance * manner.energy
-    smooth = histories.roughness * histories.roughness <= 0.1 * manner.tolerance
+    allowed = _IMBALANCE * manner.tolerance * manner.energy
+    smooth = histories.roughness * histories.roughness <= _ROUGHNESS * manner.tolerance
     balanced = abs(imbalance) <= allowed + path.energies[1] and tried.sliding.imbalance <= allowed
     return Balance(path, work, tried.solved and smooth and balanced)
 
@@ -303,8 +306,10 @@ def up_to_event(
     for _ in range(_MOST_ATTEMPTS):
         source = ended
         source_basis = basis_of(bases, time_map)
+        # a stretch from touch keeps its map; another has that of release if the force ends with it
         if time_map != 0:
-            time_map = 2 if seen.kind == PARTED or seen.kind == NO_PUSH else 1
+            ends_contact = seen.kind == PARTED or seen.kind == NO_PUSH
+            time_map = 2 if ends_contact else 1
         basis = basis_of(bases, time_map)
         share = time_at(source_basis, seen.x)
         guess = guess_from(source_basis, basis, beginning.contacts, source, share)

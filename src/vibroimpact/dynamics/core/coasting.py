@@ -80,6 +80,7 @@ def end_of_coasting(system: System, law: Law, manner: Manner, state: State) -> t
     """
     approach, rate = approach_of(system, state)
     above = max(approach - law.release_level, 0.0)
+    # about the time to separation at the present rate
     step = max(above / max(-rate, 1e-3 * manner.motion_speed), 1e-6 * manner.span)
     begun = 0.0
     now = state

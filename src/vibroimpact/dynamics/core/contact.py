@@ -79,7 +79,9 @@ def energy_held(law: Law, manner: Manner, delta: float) -> float:
     rounding errors set to zero.
     """
     held = stored_energy(law, delta)
-    return held if abs(held) > _NOTHING * manner.energy else 0.0
+    if abs(held) > _NOTHING * manner.energy:
+        return held
+    return 0.0
 
 
 @compiled
@@ -186,7 +188,9 @@ def follow_contact(
         if steps > manner.most_steps or (rides and remaining <= _TIME_ROUNDING * manner.span):
             outcome = RIDES
             break
-        longest = min(remaining if rides else np.inf, manner.longest)
+        longest = manner.longest
+        if rides:
+            longest = min(remaining, longest)
         turned = False
         if not fresh:  # events at the end of the last stretch: it is within rounding of them
             approach, rate = approach_of(system, state)
@@ -213,10 +217,11 @@ def follow_contact(
             break
 
         beginning = beginning_of(bodies, law, manner, state, sphere, delta)
-        stretch = next_stretch(
-            bases, bodies, manner, beginning, 0 if fresh else 1, min(next_length, longest), trend
-        )
+        length = min(next_length, longest)
+        time_map = 0 if fresh else 1
+        stretch = next_stretch(bases, bodies, manner, beginning, time_map, length, trend)
         if not stretch.accepted:
+            # it is not resolved, or its event is not met: half of it, or of the way to the event
             next_length = 0.5 * min(next_length, stretch.event_time)
             continue
         part = parts.written[PARTS]

@@ -12,6 +12,7 @@ _BEFORE_END = 0.75  # at the end itself the slope may be zero
 @compiled
 def cubic_at(cubic: Cubic, share: float) -> tuple[float, float]:
     """Return value and slope of a cubic at a share of the step."""
+    # Hermite's cubic: value, slope, bend and twist are its coefficients from the constant on
     change = cubic.end_value - cubic.value
     bend = 3.0 * change - 2.0 * cubic.slope - cubic.end_slope
     twist = cubic.slope + cubic.end_slope - 2.0 * change
@@ -26,6 +27,7 @@ def turn_of(cubic: Cubic) -> float:
     """
     if not cubic.slope * cubic.end_slope < 0.0:
         return 0.0
+    # the slope is s + x (turn + excess (1 - x)); it begins at the zero of its straight line
     turn = cubic.end_slope - cubic.slope
     excess = 6.0 * (cubic.end_value - cubic.value - 0.5 * (cubic.slope + cubic.end_slope))
     share = -cubic.slope / turn

@@ -56,6 +56,7 @@ def undamped_depth(
         brought = energy + weight * depth
         if not (0.0 < work < math.inf and 0.0 < static < math.inf and brought > 0.0):
             break
+        # work ~ depth^p has the exponent p = depth F/work
         change = (brought / work) ** (work / (depth * static))
         depth *= change
         if abs(change - 1.0) < _WITHIN:

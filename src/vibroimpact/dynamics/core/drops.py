@@ -178,6 +178,7 @@ def default_rest_speed(
     approach_speed : float
         Of the first impact [m/s].
     """
+    # v^2 = 2 g h with the static indentation for the height h
     touch, release, _, _, _ = levels_at(addresses[2])(coefficients)
     sag = static_indentation(addresses, coefficients, release, mass * gravity) - touch
     return max(math.sqrt(2.0 * gravity * sag), LEAST_REST_SPEED * approach_speed)
@@ -362,7 +363,10 @@ def release(state: Vector, row: Vector, contact: LineContact, law: Law, next_lev
         phase = END_FAILED
         state[END_TIME] = state[TIME]
     elif stays:
-        phase = END_STUCK if elastic_energy(law, law.release) > 0.0 else END_CAPTURED
+        # a law that stores energy at release adheres: it holds the sphere
+        phase = END_CAPTURED
+        if elastic_energy(law, law.release) > 0.0:
+            phase = END_STUCK
         row[SEPARATION] = 0.0
         state[END_TIME] = state[TIME]
         bring_to_rest(
@@ -370,7 +374,8 @@ def release(state: Vector, row: Vector, contact: LineContact, law: Law, next_lev
         )
     else:
         row[SEPARATION] = velocity
-    lost = contact.end.lost + (0.0 if stays else contact.stored) + contact.plastic
+    given_up = 0.0 if stays else contact.stored
+    lost = contact.end.lost + given_up + contact.plastic
     state[DISSIPATED] += lost - contact.plastic
     state[PLASTIC] += contact.plastic
     row[LOST] = lost

@@ -46,7 +46,10 @@ def crossing(values: Vector, reached: Bools) -> tuple[float, bool]:
         if reached[point]:
             before = values[point - 1]
             after = values[point]
-            share = before / (before - after) if before > 0.0 > after else 1.0
+            share = 1.0
+            if before > 0.0 > after:
+                share = before / (before - after)
+            # at least half a point from the start, so that the stretch up to there has a length
             return max((point - 1 + share) / last, 0.5 / last), True
     return 1.0, False
 
@@ -118,11 +121,15 @@ def first_event_of(
             first = Event(NO_PUSH, 0.0, x, contact)
 
     for number in range(2):
-        level = law.first_breakpoint if number == 0 else law.second_breakpoint
+        level = law.first_breakpoint
+        if number == 1:
+            level = law.second_breakpoint
         if not np.isfinite(level):
             continue
+        # a stretch that begins on a breakpoint leaves it to the side of its next point
         on_it = abs(delta[0] - level) <= _ON_LEVEL * max(abs(level), deepest - least_of(delta))
-        side = np.sign(delta[1 if on_it else 0] - level)
+        begins_at = 1 if on_it else 0
+        side = np.sign(delta[begins_at] - level)
         beyond = np.empty(points)
         for point in range(points):
             beyond[point] = side * (delta[point] - level)

@@ -111,6 +111,7 @@ def longest_piece(falling: Falling, drop: int, velocity: Matrix, column: int) ->
     speed = size_of(velocity, column)
     pull = size_of(falling.gravity, drop)
     some = max(speed, STILL)
+    # the time constant v/a of a drag a at the speed v
     time = some / drag_of(falling, drop, some)
     for _ in range(6):  # the constant that belongs to the speed after it
         some = max(speed + pull * time, STILL)
@@ -141,6 +142,7 @@ def time_to_fall(height: float, down: float, mean: float) -> float:
     """Return the time of a fall through a height [s], from a downward velocity and half
     the mean acceleration of its first part.
     """
+    # h = v t + m t^2 without cancellation
     if not height > 0.0:
         return 0.0
     return 2.0 * height / (down + math.sqrt(max(down * down + 4.0 * mean * height, 0.0)))
@@ -186,6 +188,7 @@ def follow_piece(
                 now[component, node] = now[component, 0]
     time = 0.0
     for _ in range(_SWEEPS):
+        # the length that reaches the end under the accelerations of the last sweep
         time = first
         if ends == AT_TOP:
             gained = 0.0
@@ -267,21 +270,12 @@ def rise(rule: FallRule, falling: Falling, begin: Moving) -> Moving:
         up = begin.velocity[components - 1, drop]
         longest = longest_piece(falling, drop, begin.velocity, drop)
         accelerate(falling, drop, begin.velocity, drop, acceleration, 0)
-        ends = up <= -acceleration[components - 1, 0] * longest
-        follow_piece(
-            rule,
-            falling,
-            drop,
-            begin,
-            drop,
-            AT_TOP if ends else GIVEN_TIME,
-            up if ends else longest,
-            0.0,
-            found,
-            drop,
-        )
-        if ends:
+        # at the first deceleration, which falls with the speed: the top comes a little later
+        if up <= -acceleration[components - 1, 0] * longest:
+            follow_piece(rule, falling, drop, begin, drop, AT_TOP, up, 0.0, found, drop)
             found.velocity[components - 1, drop] = 0.0
+        else:
+            follow_piece(rule, falling, drop, begin, drop, GIVEN_TIME, longest, 0.0, found, drop)
     return found
 
 
@@ -304,7 +298,9 @@ def motion_at(
             corners.velocity[corner],
             corners.lost[corner],
         )
-        rule = rules.rising if elapsed[column] < corners.time[corners.top, drop] else rules.falling
+        rule = rules.falling
+        if elapsed[column] < corners.time[corners.top, drop]:
+            rule = rules.rising
         follow_piece(
             rule,
             falling,

@@ -14,6 +14,8 @@ from vibroimpact.dynamics.core.records import Flight, State, System
 @compiled
 def flight_of(system: System, time: float) -> Flight:
     """Return what a free motion of some time [s] does to any state, for any damping ratio."""
+    # q(t) = C q_0 + S v_0 with S = exp(-zeta w t) sin(w_d t)/w_d, C = exp(-zeta w t) cos(w_d t) +
+    # zeta w S and w_d = w sqrt(1 - zeta^2)
     number = len(system.frequency)
     by_displacement = np.empty(number)
     by_velocity = np.empty(number)
@@ -54,6 +56,7 @@ def flown(system: System, state: State, flight: Flight) -> State:
         speed = state.velocity[coordinate]
         load = system.load[coordinate]
         frequency = system.frequency[coordinate]
+        # only rigid motions have a load; v(t) = (C - 2 zeta w S) v_0 - w^2 S q_0
         displacement[coordinate] = cosine * place + sine * speed + 0.5 * load * time * time
         slowed = (cosine - system.damping[coordinate] * sine) * speed
         velocity[coordinate] = slowed - frequency * frequency * sine * place + load * time
@@ -159,6 +162,7 @@ def energy_of_approach(system: System, state: State) -> float:
     energy = mechanical_energy(system, state)
     if system.rigid == 1:
         return energy
+    # of the energy of the rigid motions there remains that of the effective mass at their rate
     along = rigid_rate(system, state)
     of_rigid = 0.0
     for coordinate in range(system.rigid):
@@ -187,6 +191,7 @@ def greatest_vibration(system: System, state: State) -> float:
     """Return a bound of the future contribution of modes and massless elements to the
     approach [m], from their energy.
     """
+    # the amplitude of a mode is at most sqrt(v^2 + w^2 q^2)/w, as its energy does not grow
     reach = 0.0
     for coordinate in range(system.rigid, len(state.velocity)):
         frequency = system.frequency[coordinate]

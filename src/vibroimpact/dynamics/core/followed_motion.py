@@ -195,7 +195,9 @@ def followed_path(law: Law, manner: LineManner, steps: int) -> NormalPath:
     for part in range(len(corners) - 1):
         begin = corners[part]
         length = corners[part + 1] - begin
-        here = law if corners[part + 1] <= contact.time_of_deepest else leaving
+        here = leaving
+        if corners[part + 1] <= contact.time_of_deepest:
+            here = law
         number = steps
         for _ in range(2):
             times = np.empty(number + 1)

@@ -204,6 +204,7 @@ def shift(
     delay : float
         The time per unit relative change [s].
     """
+    # to first order the state goes on at its own rate for the delay
     for coordinate in range(len(state.velocity)):
         frequency = system.frequency[coordinate]
         # the static part acts on the coordinates inside the contact
@@ -228,6 +229,7 @@ def shift_to_event(recorded: Recorded, neighbour: Neighbour, excess: float, rate
     The event function of the neighbouring drop exceeds that of the reference drop by `excess`, and
     grows at a rate.
     """
+    # 0 = excess + rate delay, to first order
     parts = recorded.parts
     last = neighbour.numbers[LAST]
     node = parts.force.shape[1] - 1
@@ -343,7 +345,7 @@ def touch(recorded: Recorded, neighbour: Neighbour, first: int) -> None:
     if remembered < (1.0 - _SAME) * neighbour.values[DEEPEST]:  # on another surface
         neighbour.values[DEEPEST] = 0.0
         neighbour.values[DEEPER] = 0.0
-    # the level at which the surfaces touch depends on the memory
+    # the level at which the surfaces touch depends on the memory: by a finite difference
     lower = 0.0
     if neighbour.values[DEEPER] != 0.0:
         step = _STEP * neighbour.values[DEEPEST]
@@ -384,6 +386,7 @@ def compress(bases: Bases, recorded: Recorded, neighbour: Neighbour, first: int)
     reached = max(approach, before.release_level)
     deepest = law_indentation(before, reached)
     step = _STEP * reached
+    # d delta = d delta/dy dy + d delta/d v_0 dv_0 + d delta/d memory d memory
     closer, _ = approach_of(recorded.still, difference_of(neighbour))
     deeper = closer * (law_indentation(before, reached + step) - deepest) / step
     faster = law_with(recorded, coefficients, speed * (1.0 + _STEP))

@@ -308,7 +308,8 @@ def next_contact(
         in_dent = time < parted
     is_same = in_dent or not manner.recovers
     if not in_dent:
-        time = next_touch(system, state, dent_touch if is_same else touch, max(top, parted))
+        level = dent_touch if is_same else touch
+        time = next_touch(system, state, level, max(top, parted))
     if not np.isfinite(time):
         return np.inf, is_same
     if is_slow and separation > 0.0 and time > now.manner.until - now.progress.time:
@@ -466,7 +467,10 @@ def stayed(manner: ImpactManner, drop: VibratingDrop, parts: Parts, now: Now, ou
     phase = END_FAILED
     if outcome == CAPTURED:
         _, release, _, _, _ = levels_at(manner.addresses[2])(law.coefficients)
-        phase = END_STUCK if elastic_energy(law, release) > 0.0 else END_CAPTURED
+        # a law that stores energy at release adheres: it holds the sphere
+        phase = END_CAPTURED
+        if elastic_energy(law, release) > 0.0:
+            phase = END_STUCK
     elif outcome == RIDES:
         phase = END_RIDING
         if drop.state[TIME] + progress.time >= manner.run_end:

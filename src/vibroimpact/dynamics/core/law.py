@@ -26,7 +26,10 @@ from vibroimpact.dynamics.core.records import (
     Law,
 )
 
-_LEAST_RADIUS = 1e-9
+STATIC, DISSIPATIVE, APPROACH, SLOPE, STIFFNESS, BY_DELTA, BY_RATE = range(7)
+"""Rows of a linearised law, which `linearise` writes."""
+
+_LEAST_RADIUS = 1e-9  # of F_R's: below it the logarithm is held, or it would go to infinity
 _STEP = 1e-7  # relative step of finite differences
 _TINY = 1e-300
 _CONVERGED = 1e-8  # relative Newton step, after which the next would be below rounding
@@ -44,9 +47,12 @@ def series_indentation(series: Vector, force: float) -> tuple[float, float]:
     unit = series[1]
     if unit == 0.0:
         return force * linear, linear
+    # delta_s = F (C + f/(E R)) with f = c0 + c1 ln x + c2 x + c3 x^2 of x = (F/F_R)^(1/3), the
+    # radius of a Hertzian contact over that at F_R
     x = max((abs(force) / series[6]) ** (1.0 / 3.0), _LEAST_RADIUS)
     logarithm = math.log(x)
     factor = series[2] + series[3] * logarithm + x * (series[4] + series[5] * x)
+    # d(F f)/dF, where F dx/dF = x/3
     slope = (
         series[2]
         + series[3] * (logarithm + 1.0 / 3.0)
@@ -88,6 +94,7 @@ def indentation_at(
         step = _STEP * (abs(delta) + _TINY)
         static, _ = force(delta, 0.0, speed, coefficients)
         deeper, _ = force(delta + step, 0.0, speed, coefficients)
+        # Newton's method for delta + delta_s(F_s(delta)) = y; the dashpot has no part in it
         yielded, compliance = series_indentation(series, static)
         slope = 1.0 + compliance * (deeper - static) / step
         excess = delta + yielded - approach
@@ -96,11 +103,12 @@ def indentation_at(
             is_bracketed = high < math.inf
         else:
             high = delta
-        if not slope > 0.0:
+        if not slope > 0.0:  # a negative compliance exceeds that of the law: no unique answer
             return delta
         nearer = max(delta - excess / slope, release)
         if nearer < low:
             nearer = 0.5 * (low + delta)
+        # steps that do not halve go to and fro between two branches
         if is_bracketed and abs(nearer - delta) > 0.5 * change:
             nearer = 0.5 * (low + high)
         change = abs(nearer - delta)
@@ -129,6 +137,8 @@ def linearise(
     """
     deepest = 0.0
     fastest = 0.0
+    # steps of the largest indentation and rate of all nodes, as near touch a step of its own would
+    # be below the rounding of the force
     for node in range(len(delta)):
         deepest = max(deepest, abs(max(delta[node], release)))
         fastest = max(fastest, abs(rate[node]))
@@ -155,13 +165,13 @@ def linearise(
             yielded, compliance = series_indentation(series, static)
             approach += yielded
             slope += compliance * stiffness
-        linear[0, node] = static
-        linear[1, node] = dissipative
-        linear[2, node] = approach
-        linear[3, node] = slope
-        linear[4, node] = stiffness
-        linear[5, node] = by_delta
-        linear[6, node] = (faster_dissipative - dissipative) / faster
+        linear[STATIC, node] = static
+        linear[DISSIPATIVE, node] = dissipative
+        linear[APPROACH, node] = approach
+        linear[SLOPE, node] = slope
+        linear[STIFFNESS, node] = stiffness
+        linear[BY_DELTA, node] = by_delta
+        linear[BY_RATE, node] = (faster_dissipative - dissipative) / faster
 
 
 @compiled
@@ -174,6 +184,7 @@ def series_energy(series: Vector, force: float) -> float:
     if unit == 0.0:
         return float(0.5 * force * force * linear)
     x = max((abs(force) / series[6]) ** (1.0 / 3.0), _LEAST_RADIUS)
+    # the integral of F (d delta_s/dF) dF, term by term, with the slope of `series_indentation`
     factor = (
         series[2]
         + series[3] * (math.log(x) + 1.0 / 6.0)
@@ -334,6 +345,8 @@ def law_beyond(
             second,
             0.0,
         )
+    # a force at touch, as by adhesion, pulls the compliance in series at once; stored energy is
+    # counted from after that
     jump = 0.0
     if static_force(law, touch) != 0.0:
         delta = law_indentation(law, touch)
@@ -361,11 +374,14 @@ def snap_off(law: Law) -> float:
     """
     deltas = np.empty(_TENSILE_POINTS)
     approaches = np.empty(_TENSILE_POINTS)
-    for point in range(_TENSILE_POINTS):  # graded towards release
+    # graded towards release, where the force of a sticking contact changes most steeply
+    for point in range(_TENSILE_POINTS):
         deltas[point] = (
             law.release + (law.touch - law.release) * (point / (_TENSILE_POINTS - 1)) ** 6
         )
         approaches[point] = approach_at(law, deltas[point])
+    # the contact is unstable where the surfaces would have to approach as the law is unloaded,
+    # dy/d delta <= 0; the deepest such point is met first
     snapped = law.release
     for point in range(_TENSILE_POINTS):
         before = max(point - 1, 0)
@@ -388,4 +404,6 @@ def law_remembering(law: Law, deepest: float) -> Law:
     """Return a law after a compression to an indentation [m]: itself where that does not
     change its memory.
     """
-    return law_after(law, deepest) if deepest > law.memory_level else law
+    if deepest > law.memory_level:
+        return law_after(law, deepest)
+    return law

@@ -56,9 +56,11 @@ RELEASED, CAPTURED, FAILED = 0, 1, 2
 
 # of the root of the depth over the speed, times the order-th root of the tolerance
 _FIRST_LENGTH = 1.7
+# of the length that the error asks for, so that few steps are rejected
 _SAFETY = 0.82
 _LEAST_GROWTH = 0.2
 _MOST_GROWTH = 4.0
+# the estimated error of a step goes with these powers of its length
 _ORDER = 8.0
 _ORDER_IMPLICIT = 6.0
 _STIFF = 2_000  # explicit steps, after which implicit ones are taken
@@ -140,9 +142,14 @@ def next_step(
     One that seems to reach the next level, or the deepest point, is first tried with the root, or
     the rate, for its variable.
     """
+    # s^n is the indentation above release; slope: n s^(n - 1), slowing: dv/d tau
     root = root_of(line, state.delta)
-    ahead = root_of(line, level) - root if np.isfinite(level) else np.inf
-    slope = 2.0 * root if line.root == 2 else 4.0 * root * root * root
+    ahead = np.inf
+    if np.isfinite(level):
+        ahead = root_of(line, level) - root
+    slope = 2.0 * root
+    if line.root == 4:
+        slope = 4.0 * root * root * root
     slowing = slope * (line.gravity - force_of(line, state) / line.mass)
     if abs(ahead) <= abs(length * state.rate):
         step = advance(line, BY_ROOT, state, ahead, stages)
@@ -196,6 +203,7 @@ def first_end(
     """
     end = NO_END
     state = step.state
+    # each end that is found shortens the step, so that the last one found is the first in time
     if variable == BY_ROOT:
         end = AT_LEVEL
     elif variable == BY_RATE:
@@ -204,7 +212,10 @@ def first_end(
         end = AT_TURN
         length = length_to(line, variable, begun, 0.0, length, AT_TURN, 0.0, stages)
         state = advance(line, variable, begun, length, stages).state
-    if variable != BY_ROOT and (state.delta > level if compressing else state.delta <= level):
+    is_beyond = state.delta > level
+    if not compressing:
+        is_beyond = state.delta <= level
+    if variable != BY_ROOT and is_beyond:
         end = AT_LEVEL
         length = length_to(line, variable, begun, 0.0, length, AT_LEVEL, level, stages)
         state = advance(line, variable, begun, length, stages).state
@@ -215,6 +226,7 @@ def first_end(
             end = AT_NO_FORCE
             length = until
             state = advance(line, variable, begun, length, stages).state
+    # to the last digit, so that the next step begins on the event and does not meet it again
     if end == AT_LEVEL:
         state = LineState(state.time, level, state.rate, state.lost)
     elif end == AT_TURN:
@@ -238,6 +250,7 @@ def sinks_to(line: Line, state: LineState, least_energy: float) -> tuple[bool, f
     elastic, plastic = energies_of(line, state.delta)
     elastic_there, plastic_there = energies_of(line, sag)
     kinetic = 0.5 * line.mass * state.rate * state.rate
+    # the energy that is left to lose on the way to the static indentation
     left = (
         kinetic + elastic + plastic - elastic_there - plastic_there - weight * (state.delta - sag)
     )
@@ -269,6 +282,7 @@ def follow_line(law: Law, manner: LineManner, steps: LineSteps) -> LineContact:
     """
     stages = np.empty((4, 13))
     line = line_under(law, manner)
+    # a body that would leave at less than the tolerated error of its speed does not leave
     least_energy = 0.5 * line.mass * (manner.tolerance * manner.speed_scale) ** 2
     rounding = _ON_LEVEL * (manner.depth - law.release)
     first_length = _FIRST_LENGTH * manner.tolerance ** (1.0 / _ORDER) / manner.speed_scale
@@ -299,9 +313,9 @@ def follow_line(law: Law, manner: LineManner, steps: LineSteps) -> LineContact:
         else:
             variable, tried, step = next_step(line, state, compressing, level, length, stages)
         order = _ORDER_IMPLICIT if is_stiff else _ORDER
-        growth = min(
-            max(_SAFETY * max(step.error, _TINY) ** (-1.0 / order), _LEAST_GROWTH), _MOST_GROWTH
-        )
+        wanted = _SAFETY * max(step.error, _TINY) ** (-1.0 / order)
+        growth = min(max(wanted, _LEAST_GROWTH), _MOST_GROWTH)
+        # steps to a level or to the turn have another length than that which the error controls
         if variable == BY_FLOW or is_stiff:
             length *= growth
         if not step.error <= 1.0:
@@ -356,14 +370,20 @@ def follow_line(law: Law, manner: LineManner, steps: LineSteps) -> LineContact:
                 glide, pushes, stays = end_of_glide(line, state)
                 write_step(steps, FREE, True, state, glide)
                 state = after_glide(line, state, glide, pushes or stays)
+                if stays and not pushes:
+                    outcome = CAPTURED
+                    break
                 if not pushes:
-                    outcome = CAPTURED if stays else RELEASED
+                    outcome = RELEASED
                     break
                 if not is_stiff:
                     length = min(length, root_of(line, state.delta) / abs(state.rate))
             continue
 
-        sinks, sag = sinks_to(line, state, least_energy) if end != AT_TURN else (False, 0.0)
+        sinks = False
+        sag = 0.0
+        if end != AT_TURN:
+            sinks, sag = sinks_to(line, state, least_energy)
         if end == AT_TURN or sinks:
             compressing = False
             deepest = state.delta

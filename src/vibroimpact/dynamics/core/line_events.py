@@ -23,6 +23,7 @@ LOW, HIGH = -1, 1
 
 _MOST_ITERATIONS = 100
 _NEAR = 1e-15  # of the step
+# shares of a step, dense towards its end, as a damped force begins to pull just before release
 _PROBES = np.array([0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 0.95, 0.99, 0.999, 0.9999])
 _SAMPLES = 32
 _NEAR_PEAK = 1e-8  # of the span
@@ -47,6 +48,7 @@ def energy_to_part(line: Line, state: LineState) -> float:
     """Return the energy above that with which the bodies would part without speed, if
     nothing more were lost [J].
     """
+    # m v^2/2 + W(delta) - W(release) - m g (delta - release), with the static work W of the law
     weight = line.mass * line.gravity
     elastic, plastic = energies_of(line, state.delta)
     barrier, _ = energies_of(line, line.release)
@@ -76,8 +78,12 @@ def narrowed(bracket: Bracket, middle: float, value: float) -> Bracket:
     """
     low, high, low_value, high_value, moved = bracket
     if (value > 0.0) == (high_value > 0.0):
-        return Bracket(low, middle, low_value * (0.5 if moved == HIGH else 1.0), value, HIGH)
-    return Bracket(middle, high, value, high_value * (0.5 if moved == LOW else 1.0), LOW)
+        if moved == HIGH:
+            low_value *= 0.5
+        return Bracket(low, middle, low_value, value, HIGH)
+    if moved == LOW:
+        high_value *= 0.5
+    return Bracket(middle, high, value, high_value, LOW)
 
 
 @compiled
@@ -110,7 +116,9 @@ def length_to(
         if value == 0.0:
             return middle
         bracket = narrowed(bracket, middle, value)
-    return bracket.low if abs(bracket.low_value) < abs(bracket.high_value) else bracket.high
+    if abs(bracket.low_value) < abs(bracket.high_value):
+        return bracket.low
+    return bracket.high
 
 
 @compiled
@@ -141,6 +149,7 @@ def length_to_tension(
                     line, variable, begun, before * length, share * length, AT_NO_FORCE, 0.0, stages
                 )
             before = share
+    # it may also pull between two probes, about a minimum
     begun_force = force_of(line, begun)
     falling = force_trend(line, begun, begun_force)
     after = advance(line, variable, begun, length, stages)
@@ -159,10 +168,16 @@ def end_of_glide(line: Line, begun: LineState) -> tuple[float, bool, bool]:
 
     They stay where gravity turns them before they separate.
     """
+    # free fall against gravity, v^2 = v0^2 - 2 g h: to rest where it does not come to release, or
+    # by the root of h + v0 t + g t^2/2 = 0 without cancellation (v0 < 0)
     above = begun.delta - line.release
     square = begun.rate * begun.rate - 2.0 * line.gravity * above
     stays = square < 0.0
-    length = -begun.rate / line.gravity if stays else 2.0 * above / (math.sqrt(square) - begun.rate)
+    if stays:
+        length = -begun.rate / line.gravity
+    else:
+        parting = math.sqrt(square)
+        length = 2.0 * above / (parting - begun.rate)
     no_room = np.empty((4, 0))
     before = 0.0
     for sample in range(1, _SAMPLES):  # at separation itself the force is zero to rounding
@@ -187,6 +202,7 @@ def after_glide(line: Line, begun: LineState, length: float, within: bool) -> Li
     """
     after = advance(line, FREE, begun, length, np.empty((4, 0))).state
     delta = after.delta if within else line.release
+    # the surface recovers behind the bodies: what it stored does no work on them
     lost = energies_of(line, begun.delta)[0] - energies_of(line, delta)[0]
     return LineState(after.time, delta, after.rate, after.lost + lost)
 

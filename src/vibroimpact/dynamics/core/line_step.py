@@ -45,8 +45,10 @@ _ASIDE = 1e-6  # of the span: step of finite differences
 @compiled
 def root_of(line: Line, delta: float) -> float:
     """Return the root of the indentation above that of release, in which the force is smooth."""
-    above = max(delta - line.release, 0.0)
-    return math.sqrt(above) if line.root == 2 else math.sqrt(math.sqrt(above))
+    root = math.sqrt(max(delta - line.release, 0.0))
+    if line.root == 2:
+        return root
+    return math.sqrt(root)  # line.root is 4
 
 
 @compiled
@@ -86,6 +88,7 @@ def advance(line: Line, variable: int, begun: LineState, length: float, stages: 
     delta = begun.delta
     whole = 0.0
     least = np.inf
+    # the last stage is the end of the step, whose derivatives the error estimate takes as well
     for stage in range(STAGES + 1):
         by_root = 0.0
         by_rate = 0.0
@@ -94,18 +97,25 @@ def advance(line: Line, variable: int, begun: LineState, length: float, stages: 
             by_rate += STAGE_WEIGHTS[stage, before] * stages[1, before]
         root = begun_root + length * by_root
         rate = begun.rate + length * by_rate
+        # delta - release = s^n, of which n s^(n - 1) is the slope
         square = root * root
-        slope = 2.0 * root if is_square else 4.0 * square * root
-        delta = line.release + (square if is_square else square * square)
+        if is_square:
+            slope = 2.0 * root
+            delta = line.release + square
+        else:
+            slope = 4.0 * square * root
+            delta = line.release + square * square
         static, dissipative = force(delta, rate, line.speed, line.coefficients)
         whole = static + dissipative
         least = min(least, whole)
         change = slope * (gravity - whole * per_mass)
+        # Henon: all derivatives by tau are divided by that of the variable, ds or dv/d tau
         pace = 1.0
         if variable == BY_ROOT:
             pace = 1.0 / rate
         elif variable == BY_RATE:
             pace = 1.0 / change
+        # of s, v, t and the energy that damping takes
         stages[0, stage] = rate * pace
         stages[1, stage] = change * pace
         stages[2, stage] = slope * pace
@@ -129,6 +139,8 @@ def advance(line: Line, variable: int, begun: LineState, length: float, stages: 
             scale = line.time_scale
         elif quantity == 3:
             scale = line.energy_scale
+        # the estimate of DOP853, E5^2/sqrt(E5^2 + 0.01 E3^2), which goes with the eighth power of
+        # the length
         both = math.sqrt(fifth * fifth + 0.01 * third * third) * scale
         error = max(error, abs(length) * fifth * fifth / (both + _TINY))
     after = LineState(begun.time + length * time, delta, rate, begun.lost + length * lost)
@@ -162,6 +174,7 @@ def energies_of(line: Line, delta: float) -> tuple[float, float]:
 @compiled
 def force_trend(line: Line, state: LineState, force: float) -> float:
     """Return the rate of change of the force [N/s]; `force`: its value [N]."""
+    # central difference along the motion: delta changes with v, v with its acceleration
     function = force_at(line.force)
     acceleration = line.gravity - force / line.mass
     aside = _ASIDE * line.span

@@ -41,13 +41,18 @@ def advance_implicitly(line: Line, begun: LineState, length: float) -> Advance:
     whole = implicit_step(line, begun, length)
     half = implicit_step(line, begun, 0.5 * length)
     after = implicit_step(line, half.state, 0.5 * length)
+    # Richardson: what one step and two halves differ by is 31 errors of the halves
+    depth_scale = _OF_ERROR * line.speed_scale * line.span
+    speed_scale = _OF_ERROR * line.speed_scale
+    energy_scale = _OF_ERROR * line.energy_scale
     error = whole.error + half.error + after.error
-    error += abs(whole.state.delta - after.state.delta) / (_OF_ERROR * line.speed_scale * line.span)
-    error += abs(whole.state.rate - after.state.rate) / (_OF_ERROR * line.speed_scale)
-    error += abs(whole.state.lost - after.state.lost) / (_OF_ERROR * line.energy_scale)
+    error += abs(whole.state.delta - after.state.delta) / depth_scale
+    error += abs(whole.state.rate - after.state.rate) / speed_scale
+    error += abs(whole.state.lost - after.state.lost) / energy_scale
     if not np.isfinite(error):
         error = np.inf
-    return Advance(after.state, error, min(half.least_force, after.least_force), after.force)
+    least_force = min(half.least_force, after.least_force)
+    return Advance(after.state, error, least_force, after.force)
 
 
 @compiled
@@ -70,6 +75,7 @@ def implicit_step(line: Line, begun: LineState, length: float) -> Advance:
     for _ in range(_MOST_ITERATIONS):
         least = np.inf
         for stage in range(3):
+            # delta_i = delta_0 + h sum_j A_ij v_j
             moved = 0.0
             for other in range(3):
                 moved += _WEIGHTS[stage, other] * rate[other]
@@ -89,6 +95,8 @@ def implicit_step(line: Line, begun: LineState, length: float) -> Advance:
             by_delta[stage] = (last - deeper_static - deeper_dissipative) / (deeper * line.mass)
             by_rate[stage] = (last - faster_static - faster_dissipative) / (faster * line.mass)
             lost[stage] = dissipative * rate[stage]
+        # Newton's method for v_i = v_0 + h sum_j A_ij a(delta_j, v_j), whose Jacobian is
+        # I - h A da/dv - h^2 A (da/d delta) A
         for stage in range(3):
             reached = begun.rate
             for other in range(3):
@@ -102,7 +110,8 @@ def implicit_step(line: Line, begun: LineState, length: float) -> Advance:
                         * by_delta[through]
                         * _WEIGHTS[through, other]
                     )
-                matrix[stage, other] = (1.0 if stage == other else 0.0) - change
+                matrix[stage, other] = -change
+            matrix[stage, stage] += 1.0
             right[stage, 0] = reached - rate[stage]
         solve_in_place(matrix, right)
         change = 0.0
@@ -114,12 +123,13 @@ def implicit_step(line: Line, begun: LineState, length: float) -> Advance:
         if change <= _CONVERGED * line.speed_scale:
             error = 0.0
             break
+    # the last stage of a Radau IIA method is the end of the step
     moved = 0.0
     dissipated = 0.0
     for stage in range(3):
         moved += _WEIGHTS[2, stage] * rate[stage]
         dissipated += _WEIGHTS[2, stage] * lost[stage]
-    state = LineState(
-        begun.time + length, begun.delta + length * moved, rate[2], begun.lost + length * dissipated
-    )
+    delta_end = begun.delta + length * moved
+    lost_end = begun.lost + length * dissipated
+    state = LineState(begun.time + length, delta_end, rate[2], lost_end)
     return Advance(state, error, least, last)

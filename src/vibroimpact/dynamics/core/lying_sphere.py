@@ -179,6 +179,7 @@ def advance(lying: LyingSphere, row: Vector, length: float, stages: Matrix, stat
             for earlier in range(stage):
                 rate += STAGE_WEIGHTS[stage, earlier] * stages[earlier, number]
             state[number] = row[PLACE + number] + length * rate
+        # v = s - w, ds/dt = g + u - q and dw/dt = u - (1 - m_t/m) q
         taken_x, taken_y, turn_x, turn_y = turning_forces(lying, row, state)
         stages[stage, 0] = state[2] - state[4]
         stages[stage, 1] = state[3] - state[5]
@@ -200,6 +201,7 @@ def advance(lying: LyingSphere, row: Vector, length: float, stages: Matrix, stat
             difference_3 += ERROR_OF_ORDER_3[stage] * stages[stage, number]
         of_order_5 += (difference_5 / allowed) ** 2
         of_order_3 += (difference_3 / allowed) ** 2
+    # the estimate of DOP853 for the root mean square of the four components
     both = of_order_5 + 0.01 * of_order_3
     if both == 0.0:
         return 0.0
@@ -211,7 +213,9 @@ def write_along_line(lying: LyingSphere, row: Vector, elapsed: float, state: Vec
     """Write place, s, w and q (8,) a time after the begin of a part along a line [s]."""
     rest = 1.0 - lying.share
     for axis in range(2):
-        pull = lying.gravity_x if axis == 0 else lying.gravity_y
+        pull = lying.gravity_x
+        if axis == 1:
+            pull = lying.gravity_y
         taken = row[TAKEN + axis]
         slip_rate = pull + row[TURN + axis] - taken
         turning_rate = row[TURN + axis] - rest * taken
@@ -243,7 +247,9 @@ def time_to_zero(x: float, y: float, rate_x: float, rate_y: float) -> float:
     if length == 0.0:
         return np.inf
     rate = (x * rate_x + y * rate_y) / length
-    return -length / rate if rate < 0.0 else np.inf
+    if rate < 0.0:
+        return -length / rate
+    return np.inf
 
 
 @compiled
@@ -300,8 +306,11 @@ def step_to_event(
         return length, False, False
     low = 0.0
     high = length
+    # the last round writes the state at the end of the bracket that is beyond the event
     for halving in range(_MOST_HALVINGS + 1):
-        tried = high if halving == _MOST_HALVINGS else 0.5 * (low + high)
+        tried = 0.5 * (low + high)
+        if halving == _MOST_HALVINGS:
+            tried = high
         advance(lying, row, tried, stages, state)
         slips, turns = until_events(lying, row, state)
         if (changes and slips <= 0.0) or (settles and turns <= 0.0):
@@ -321,7 +330,9 @@ def adapted_step(
     was_too_long = False
     while True:
         error = advance(lying, row, length, stages, state)
-        factor = _GROWS if error == 0.0 else _SAFETY * error ** (-1.0 / 8.0)
+        factor = _GROWS
+        if error != 0.0:  # it goes with the eighth power of the length
+            factor = _SAFETY * error ** (-1.0 / 8.0)
         factor = min(max(factor, _SHRINKS), _GROWS)
         if not error >= 1.0:
             if was_too_long:
@@ -539,7 +550,9 @@ def edge_time(lying: LyingSphere, motion: Matrix, until: float, half: tuple[floa
     stations = np.empty(3)
     for part in range(len(motion)):
         row = motion[part]
-        end = until if part + 1 == len(motion) else motion[part + 1, BEGIN]
+        end = until
+        if part + 1 < len(motion):
+            end = motion[part + 1, BEGIN]
         stations[2] = end - row[BEGIN]
         for axis in range(2):
             stations[axis] = time_of_turn(lying, row, stations[2], axis, stages, state)

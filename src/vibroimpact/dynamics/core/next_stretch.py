@@ -21,6 +21,8 @@ from vibroimpact.dynamics.core.events import NO_EVENT
 from vibroimpact.dynamics.core.records import Bases, Event, Nodes, State
 
 _EASY = 0.01  # target roughness of the next stretch, relative to the root of the tolerance
+_LEAST_GROWTH = 0.7
+_MOST_GROWTH = 4.0
 _TINY = 1e-300
 
 
@@ -32,7 +34,7 @@ def length_growth(roughness: float, tolerance: float, nodes: int) -> float:
     to the power of the number of nodes.
     """
     ratio = (_EASY * math.sqrt(tolerance) / max(roughness, _TINY)) ** (1.0 / nodes)
-    return float(min(max(ratio, 0.7), 4.0))
+    return float(min(max(ratio, _LEAST_GROWTH), _MOST_GROWTH))
 
 
 @compiled
@@ -66,7 +68,8 @@ def next_stretch(
     balance = balance_of(basis, bodies, manner, beginning, tried)
     event_time = np.inf
     if balance.resolved:  # otherwise the event is not certain
-        event_time = tried.length * time_at(basis, max(tried.event.x, 1.0 / (len(basis.grid) - 1)))
+        first_point = 1.0 / (len(basis.grid) - 1)
+        event_time = tried.length * time_at(basis, max(tried.event.x, first_point))
     return NextStretch(False, tried, balance, time_map, no_event, event_time)
 
 

@@ -160,10 +160,14 @@ def write_segment(
     rule = phase.rule
     vector = rule * KINDS + TURNING  # of one whose integrals begin at its deep end
     count = rules.counts[rule]
+    # the nodes and the far end, up to whole vectors of eight numbers, which are multiplied at once
     width = (count + 8) // 8 * 8
     for node in range(width):
-        pace = solved[PACE_OF_PHASE, node] if node < count else 0.0
-        force = solved[STATIC, node] + solved[LOSS, node] if node < count else 0.0
+        pace = 0.0
+        force = 0.0
+        if node < count:
+            pace = solved[PACE_OF_PHASE, node]
+            force = solved[STATIC, node] + solved[LOSS, node]
         room[NODE_PACE, node] = pace
         room[NODE_FORCE, node] = force
         room[NODE_PUSH, node] = pace * force
@@ -192,6 +196,7 @@ def write_segment(
     multiply_row(room, NODE_IMPULSE, integrals, of_integrals, width, columns, IMPULSE)
     room[TIME, 0] = 0.0
     room[IMPULSE, 0] = 0.0
+    # the impulse at the end is known from the speeds; what the nodes miss is shared out
     missing = stopped - room[IMPULSE, steps]
     if abs(missing) <= _SMALL * abs(stopped):
         factor = stopped / room[IMPULSE, steps]
@@ -208,6 +213,7 @@ def write_segment(
         time += room[TIME, steps]
         impulse += room[IMPULSE, steps]
     for point in range(steps + 1):
+        # rate, bend: first and second derivative of y by the step's number
         share = point / steps
         rate = end * (1.0 + _COARSER * (1.0 - 2.0 * share)) / steps
         bend = -2.0 * _COARSER * end / (steps * steps)

@@ -24,6 +24,7 @@ def write_springs(
     """Write the accelerations by the springs and dampers of all modes at the start, going
     on at the speeds then, into `of_modes` (2, m).
     """
+    # (w^2 q_0 + d v_0) 1 + w^2 v_0 t, as in `receptance.surface_motion`
     for mode in range(len(displacement)):
         frequency_squared = surfaces.frequency_squared[mode]
         spring = surfaces.damping[mode] * velocity[mode] + frequency_squared * displacement[mode]
@@ -112,7 +113,8 @@ def stretch_path(
     speeds = np.empty((nodes, number))
     for node in range(nodes):
         speeds[node] = velocity
-    acceleration = np.zeros((nodes if accelerated else 0, number))
+    accelerated_nodes = nodes if accelerated else 0
+    acceleration = np.zeros((accelerated_nodes, number))
     for coordinate in range(rigid):
         for node in range(nodes):
             value = coordinates.load[coordinate]
@@ -145,6 +147,7 @@ def stretch_path(
             integrated_imaginary = imaginary * sigma - real * sigma_imaginary
             subtract_real_part(integrated, integrated_imaginary, of_modes, speeds[node, rigid:])
 
+    # e' = -(r e_0 1 + m F)/(1 + r sigma) in the eigenbasis
     massless = np.zeros((elements, nodes))
     local_end = local.copy()
     for element in range(elements):
@@ -166,6 +169,8 @@ def stretch_path(
         for node in range(nodes):
             local_end[element] += length * basis.integral[nodes - 1, node] * massless[element, node]
 
+    # last row of the integration matrix: the quadrature over the stretch, of d v^2 for what dampers
+    # take
     moved = np.zeros(number)
     lost = np.zeros(number + 1)
     for node in range(nodes):
@@ -194,6 +199,7 @@ def stretch_path(
     for coordinate in range(number - driven):
         if coordinates.rounding[coordinate] == 0.0:
             continue
+        # v^2/2 + w^2 q^2/2 - load q, per unit modal mass
         faster = speeds[nodes - 1, coordinate] - velocity[coordinate]
         spring = 0.5 * coordinates.frequency[coordinate] * coordinates.frequency[coordinate]
         gain += 0.5 * faster * (speeds[nodes - 1, coordinate] + velocity[coordinate])

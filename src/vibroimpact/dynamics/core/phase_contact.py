@@ -107,13 +107,20 @@ def state_in(
 ) -> LineState:
     """Return the state at y in a segment, with no time and no loss."""
     kind = segment.kind
+    # delta = shallow + (deep - shallow) (1 - y^2)^n: about y = 0 a turn is smooth, and at touch the
+    # power n makes a root of the indentation smooth
     shape = 1.0 - y * y
-    if kind in (TURNING_AT_TOUCH, AT_TOUCH, AT_TOUCH_INWARD):
-        shape = shape * shape if rules.root == 2 else shape * shape * shape * shape
+    is_at_touch = kind in (TURNING_AT_TOUCH, AT_TOUCH, AT_TOUCH_INWARD)
+    if is_at_touch and rules.root == 2:
+        shape = shape * shape
+    elif is_at_touch:
+        shape = shape * shape * shape * shape
     count = rules.counts[phase.rule]
     weigh(rules.vectors, phase.rule * KINDS + kind, count, y, room)
     square = max(weighed(count, SQUARE, room), 0.0)
-    factor = y if kind in (TURNING_AT_TOUCH, TURNING) else 1.0
+    factor = 1.0
+    if kind in (TURNING_AT_TOUCH, TURNING):  # their square is that of the rate over y
+        factor = y
     delta = segment.shallow + (phase.deep - segment.shallow) * shape
     return LineState(0.0, delta, segment.sign * factor * math.sqrt(square), 0.0)
 
@@ -149,7 +156,9 @@ def peak_in(
     count = rules.counts[phase.rule]
     vector = phase.rule * KINDS + segment.kind
     turns = segment.kind in (TURNING_AT_TOUCH, TURNING)
-    power = rules.root if segment.kind in (TURNING_AT_TOUCH, AT_TOUCH_INWARD) else 1
+    power = 1
+    if segment.kind in (TURNING_AT_TOUCH, AT_TOUCH_INWARD):
+        power = rules.root
     speed = line.speed
     release = line.release
     gravity = line.gravity
@@ -165,8 +174,12 @@ def peak_in(
             most = highest
             best = node
     middle = vectors[vector, PLACE, best]
-    low = vectors[vector, PLACE, best - 1] if best > 0 else 0.0
-    high = vectors[vector, PLACE, best + 1] if best < count - 1 else 1.0
+    low = 0.0
+    if best > 0:
+        low = vectors[vector, PLACE, best - 1]
+    high = 1.0
+    if best < count - 1:
+        high = vectors[vector, PLACE, best + 1]
     y = low
     first = low
     second = high
@@ -189,7 +202,9 @@ def peak_in(
         if power > 2:
             shape *= shape
         delta = shallow + span * shape
-        rate = math.sqrt(square) * (y if turns else 1.0)
+        rate = math.sqrt(square)
+        if turns:
+            rate *= y
         static, loss = force(delta, rate, speed, coefficients)
         highest = static + loss
         if moved <= _NEAR:
@@ -213,6 +228,7 @@ def peak_in(
                 low = y
             else:
                 high = y
+            # inverse quadratic interpolation: y as a parabola of the trend, at zero
             nearer = (
                 first
                 * second_trend
@@ -233,8 +249,11 @@ def peak_in(
             moved = abs(nearer - y)
             y = nearer
     if first_trend < 0.0 < second_trend or moved < math.inf:
+        # elapsed from the deep end, y = 0, or inwards from the shallow one, y = 1, where y falls
         elapsed = elapsed_at(vectors, rules.matrices, vector, count, y, room)
-        when = phase.duration - elapsed if segment.kind < AT_TOUCH_INWARD else -elapsed
+        when = -elapsed
+        if segment.kind < AT_TOUCH_INWARD:
+            when = phase.duration - elapsed
     else:
         highest = -math.inf
     return highest, when
@@ -284,6 +303,7 @@ def tension_in(
         if node > 0 and last < before and last <= force:
             rise = (force - last) / (y - last_y)
             fall = (before - last) / (last_y - before_y)
+            # parabola through three points, with the slope at the middle one and its least value
             bend = (rise + fall) / (y - before_y)
             slope = rise - bend * (y - last_y)
             if last - 0.25 * slope * slope / bend < -slack:
@@ -332,19 +352,12 @@ def collocate_contact(
         phase = Phase(False, 0, 0.0, 0.0, 0.0, 0.0, 0.0)
         segment = Segment(TURNING, 1.0, 0.0, 0.0, 0.0, 0.0)
         if level < manner.depth - _MARGIN * (manner.depth - law.touch):
-            segment = Segment(
-                AT_TOUCH_INWARD if is_at_touch else BETWEEN_INWARD, 1.0, level, deepest, square, 0.0
-            )
+            kind = AT_TOUCH_INWARD if is_at_touch else BETWEEN_INWARD
+            segment = Segment(kind, 1.0, level, deepest, square, 0.0)
             phase = solve_phase(line, rules, segment, rules.roughness, rules.sharper, room)
         if not phase.solved:
-            segment = Segment(
-                TURNING_AT_TOUCH if is_at_touch else TURNING,
-                1.0,
-                manner.depth,
-                deepest,
-                0.0,
-                square,
-            )
+            kind = TURNING_AT_TOUCH if is_at_touch else TURNING
+            segment = Segment(kind, 1.0, manner.depth, deepest, 0.0, square)
             phase = solve_phase(line, rules, segment, rules.roughness, rules.sharper, room)
             turned = True
             if not phase.solved or phase.deep > level + _ABOUT * rules.tolerance * (
@@ -353,7 +366,9 @@ def collocate_contact(
                 return False, unsolved
         highest, when = peak_in(line, rules, segment, phase, room)
         if grid.steps > 0:
-            slower = math.sqrt(square) - (0.0 if turned else math.sqrt(phase.reached))
+            slower = math.sqrt(square)
+            if not turned:
+                slower -= math.sqrt(phase.reached)
             write_segment(
                 grid,
                 rules,
@@ -396,12 +411,15 @@ def collocate_contact(
             law, state.delta, False, _ABOUT * rules.tolerance * (deepest - law.release)
         )
         is_last = level == law.release
-        kind = TURNING if state.rate == 0.0 else BETWEEN
+        begins_at_turn = state.rate == 0.0
+        kind = TURNING if begins_at_turn else BETWEEN
         if is_last:
-            kind = TURNING_AT_TOUCH if state.rate == 0.0 else AT_TOUCH
+            kind = TURNING_AT_TOUCH if begins_at_turn else AT_TOUCH
         segment = Segment(kind, -1.0, state.delta, level, state.rate * state.rate, 0.0)
         ends_inside = manner.tension == TENSION_CUT and manner.contact_end == ENDS_AT_NO_FORCE
-        roughness = rules.roughness_inside if ends_inside else rules.roughness
+        roughness = rules.roughness
+        if ends_inside:
+            roughness = rules.roughness_inside
         phase = solve_phase(line, rules, segment, roughness, sharper_back, room)
         if not phase.solved:
             return False, unsolved

@@ -60,6 +60,7 @@ def modal_weights(surfaces: Surfaces, start: Start) -> ModalWeights:
     for part in range(parts):
         for contact in range(contacts):
             for mode in range(modes):
+                # w^2 q_0 + 2 zeta w v_0
                 spring = surfaces.frequency_squared[mode] * start.displacement[mode]
                 damper = surfaces.damping[mode] * start.velocity[mode]
                 weights[row, mode] = surfaces.shapes[part, contact, mode] * (spring + damper)
@@ -99,6 +100,7 @@ def write_slopes(
     """Write the derivatives of the admittances of `write_admittances` by sigma into
     `slopes` (2, m).
     """
+    # dA/d sigma = -(d + 2 w^2 sigma) A^2
     for mode in range(len(surfaces.damping)):
         slope = surfaces.damping[mode] + 2.0 * surfaces.frequency_squared[mode] * sigma
         slope_imaginary = 2.0 * surfaces.frequency_squared[mode] * sigma_imaginary
@@ -186,6 +188,7 @@ def modal_slopes(
 @compiled
 def add_at_nodes(backward: Matrix, k: int, coefficient: complex, values: Vector) -> None:
     """Add what a coefficient in the eigenbasis is at the nodes to `values` (N,)."""
+    # real part of the coefficient times the eigenvector, or twice it, for both of a conjugate pair
     for node in range(len(values)):
         values[node] += (
             backward[2 * k, node] * coefficient.real + backward[2 * k + 1, node] * coefficient.imag
@@ -228,8 +231,13 @@ def surface_motion(
     moved = np.zeros((contacts, nodes))
     mobility = np.empty((parts, contacts, contacts, number), dtype=np.complex128)
     receptance = np.empty((parts, contacts, contacts, number), dtype=np.complex128)
+    # first rows of `modal_weights` after those of the receptances
     springs = parts * contacts * contacts
     spring_rates = springs + parts * contacts
+    # The acceleration a of a mode at the nodes obeys a + d v + w^2 q = -chi F. With q and v as
+    # integrals of a, and t for the times of the nodes, it is in the eigenbasis
+    #   a = -((w^2 q_0 + d v_0) 1 + w^2 v_0 t + chi F)/(1 + d sigma + w^2 sigma^2)
+    # of which v = v_0 + sigma a and q = q_0 + v_0 t + sigma^2 a.
     for k in range(number):
         sigma = length * complex(basis.eigenvalues[0, k], basis.eigenvalues[1, k])
         one = complex(basis.one[0, k], basis.one[1, k])
@@ -245,6 +253,7 @@ def surface_motion(
                 spring_rate = complex(sums[0, row, k], sums[1, row, k])
                 of_part = -sigma * (one * spring + clock * spring_rate)
                 if part == 0:
+                    # massless elements: e' = -r e - m F, so e' = -(r e_0 1 + m F)/(1 + r sigma)
                     for element in range(elements):
                         held = (
                             surfaces.incidence[contact, element]
@@ -308,6 +317,7 @@ def surface_motion(
             rate_of_approach[row] = outer_rate
             closing[row] = outer_rate + start.inner_rate[contact] + inner[contact, node]
             approach[row] = start.approach[contact] + time * mean_rate + moved[contact, node]
+            # rigid motions by the integration matrix itself, which needs no eigenbasis
             for other in range(contacts):
                 rigid = surfaces.rigid_pairs[contact, other]
                 for force_node in range(nodes):
@@ -375,6 +385,8 @@ def motion_by_length(
     pushed_static = np.empty(contacts, dtype=np.complex128)
     springs = parts * contacts * contacts
     spring_rates = springs + parts * contacts
+    # the equations of `surface_motion`, differentiated by h at the same forces at the nodes:
+    # d sigma/dh is the eigenvalue, and t goes with h
     for k in range(number):
         value = complex(basis.eigenvalues[0, k], basis.eigenvalues[1, k])
         sigma = length * value
@@ -395,10 +407,8 @@ def motion_by_length(
                 spring_rate = complex(sums[0, row, k], sums[1, row, k])
                 spring_rate_slope = complex(slopes[0, row, k], slopes[1, row, k])
                 acceleration = -(one * spring + length * clock * spring_rate)
-                acceleration_slope = -(
-                    value * (one * spring_slope + length * clock * spring_rate_slope)
-                    + clock * spring_rate
-                )
+                by_sigma = one * spring_slope + length * clock * spring_rate_slope
+                acceleration_slope = -(value * by_sigma + clock * spring_rate)
                 rate = sigma * acceleration
                 rate_slope = value * acceleration + sigma * acceleration_slope
                 if part == 0:
@@ -418,6 +428,8 @@ def motion_by_length(
                     inner_slope = rate_slope
                 rates += rate
                 rate_slopes += rate_slope
+            # the receptance is sigma times the mobility Y, which is sigma times the sum A of the
+            # modes: d(sigma Y)/d sigma = Y + sigma Y', with Y' = A + sigma A'
             by_force = 0.0 + 0.0j
             by_force_slope = 0.0 + 0.0j
             by_static = 0.0 + 0.0j

@@ -150,12 +150,16 @@ def march_resisted(
         mean = 0.5 * (force[step] + force[step + 1])
         # half a step, such that a friction of a constant part of the normal force has exactly that
         # part of its impulse
-        rubs = 0.5 * (pressed / mean if mean > 0.0 else length)
+        rubs = 0.5 * length
+        if mean > 0.0:
+            rubs = 0.5 * (pressed / mean)
         most = 0.5 * sphere.turn * sphere.rolling_coefficient * pressed
         slows = rubs / sphere.mass
         turns = rubs * sphere.turn
         pulled_x = 0.5 * length * sphere.gravity[0]
         pulled_y = 0.5 * length * sphere.gravity[1]
+        # half a kick with the friction at the start of the step, the drift, and half a kick with
+        # that at its end
         velocity_x = velocity[step, 0] + pulled_x - slows * friction[step, 0]
         velocity_y = velocity[step, 1] + pulled_y - slows * friction[step, 1]
         turning_x, turning_y, unused = slowed(
@@ -189,6 +193,7 @@ def history_at_touch(
     `coefficient`: of friction. `rim`: radius of about the largest contact that will come [m], for
     which the springs of a row are close enough to each other.
     """
+    springs = SPRINGS if rubbing.at_rim else 0
     return TangentialHistory(
         rubbing.at_rim,
         rubbing.growing,
@@ -201,7 +206,7 @@ def history_at_touch(
         rubbing.sliding_energy,
         rim / SPRINGS,
         0.0,
-        np.zeros((2, SPRINGS if rubbing.at_rim else 0)),
+        np.zeros((2, springs)),
         np.zeros(2),
         0.0,
     )
@@ -213,6 +218,7 @@ def rim_of(coefficients: Vector, force: Vector) -> float:
     largest = 0.0
     for point in range(len(force)):
         largest = max(largest, force[point])
+    # Hertz: a^3 = 3 F R/(4 E*)
     return float(np.cbrt(0.75 * largest * coefficients[RADIUS] / coefficients[MODULUS]))
 
 

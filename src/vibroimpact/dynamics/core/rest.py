@@ -52,6 +52,8 @@ def is_near_rest(system: System, law: Law, state: State, force: float) -> bool:
     most = _REST_MARGIN * weight
     if weight == 0.0 or abs(force - weight) > most:
         return False
+    # 1/w^2 of the lowest frequency is at most the sum of those of all: m/k of the contact and of
+    # the compliances, and the trace for the modes
     overlap = max(approach_of(system, state)[0] - law.release_level, 0.0)
     on_springs = system.mass * (overlap / weight / _REST_MARGIN + system.compliance)
     slowest = 1.0 / math.sqrt(on_springs + system.flexibility)

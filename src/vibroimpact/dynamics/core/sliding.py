@@ -85,6 +85,8 @@ def last_slide(
     integral = before.integral
     share = 0.0
     for _ in range(_ROUNDS):
+        # |I| goes with a^power, its bound with a^3: they meet where 2/3 a^(3 - power) is |I| over
+        # a^power now
         rim = (1.5 * abs(integral) / max(depth, _TINY) ** (0.5 * power)) ** (1.0 / (3.0 - power))
         share = share_at(depths, min(rim * rim, start.depth))
         there = normal_between(start, end, share)
@@ -92,7 +94,8 @@ def last_slide(
         integral = stick(
             friction, shortened(start, share), shortened(there, share), before, power
         ).integral
-    return share, -1.0 if integral < 0.0 else 1.0
+    direction = -1.0 if integral < 0.0 else 1.0
+    return share, direction
 
 
 @compiled
@@ -184,11 +187,15 @@ def begin_slip(
     """
     if not friction.at_rim:
         state = in_direction(state, direction, 0.0)
-        return begin_sliding(friction, state, normal.depth) if direction != 0.0 else state
+        if direction == 0.0:
+            return state
+        return begin_sliding(friction, state, normal.depth)
     add_rim(curve, normal.depth, state.displacement, state.integral)
     begin_at_rim(curve)
     state = in_direction(state, direction, math.sqrt(normal.depth))
-    return begin_sliding(friction, state, normal.depth) if state.front == 0.0 else state
+    if state.front == 0.0:
+        return begin_sliding(friction, state, normal.depth)
+    return state
 
 
 @compiled
@@ -221,7 +228,9 @@ def cease_to_slip(
         0.0,
         state.microslip,
     )
-    return end_sliding(friction, state, normal.depth) if has_slid else state
+    if has_slid:
+        return end_sliding(friction, state, normal.depth)
+    return state
 
 
 @compiled
@@ -245,9 +254,12 @@ def settle(friction: Friction, curve: Curve, start: NormalState, state: SlipStat
     rate = start.pace * state.velocity
     if state.direction == 0.0:
         if friction.at_rim and abs(rate) > start.depth_slope:
-            return begin_slip(friction, curve, start, state, -1.0 if rate < 0.0 else 1.0)
+            direction = -1.0 if rate < 0.0 else 1.0
+            return begin_slip(friction, curve, start, state, direction)
         return state
-    least = 1.0 if friction.at_rim else least_rate(friction, start.depth_slope > 0.0)
+    least = 1.0
+    if not friction.at_rim:
+        least = least_rate(friction, start.depth_slope > 0.0)
     if state.direction * rate < least * start.depth_slope:
         return turn_back(friction, curve, start, state)
     return state
@@ -258,8 +270,13 @@ def jump_of_spring(
     friction: Friction, curve: Curve, start: NormalState, end: NormalState, state: SlipState
 ) -> SlipState:
     """Return the state of a spring that stretches, or shrinks, with a depth that jumps."""
-    power = friction.growing if end.depth > start.depth else friction.shrinking
-    ratio = end.depth / start.depth if start.depth > 0.0 else 1.0
+    power = friction.shrinking
+    if end.depth > start.depth:
+        power = friction.growing
+    ratio = 1.0
+    if start.depth > 0.0:
+        ratio = end.depth / start.depth
+    # Q goes with the power of the contact radius, which is the root of the depth
     integral = state.integral * ratio ** (0.5 * power)
     is_over = abs(integral) > end.most
     had_slid = slides(state)
@@ -268,7 +285,9 @@ def jump_of_spring(
         direction = 1.0 if integral > 0.0 else -1.0
     integral = min(max(integral, -end.most), end.most)
     state = SlipState(state.velocity, state.displacement, integral, direction, 0.0, state.microslip)
-    return begin_sliding(friction, state, end.depth) if is_over and not had_slid else state
+    if is_over and not had_slid:
+        return begin_sliding(friction, state, end.depth)
+    return state
 
 
 @compiled
@@ -302,7 +321,9 @@ def jump_of_rim(
         front,
         state.microslip,
     )
-    return begin_sliding(friction, state, end.depth) if not has_slid and front == 0.0 else state
+    if not has_slid and front == 0.0:
+        return begin_sliding(friction, state, end.depth)
+    return state
 
 
 @compiled
@@ -334,7 +355,9 @@ def advance_sticking(
     `stays`: it does not change any more.
     """
     grows = rises(start) or end.depth_slope > 0.0
-    power = friction.growing if grows else friction.shrinking
+    power = friction.shrinking
+    if grows:
+        power = friction.growing
     after = stick(friction, start, end, before, power)
     if friction.at_rim:
         share, direction = rim_slips(start, end, before, after)
@@ -369,7 +392,9 @@ def advance_sliding(
     as `advance_sticking`.
     """
     after = slide(friction, start, end, before)
-    least = 1.0 if friction.at_rim else least_rate(friction, rises(start) or end.depth_slope > 0.0)
+    least = 1.0
+    if not friction.at_rim:
+        least = least_rate(friction, rises(start) or end.depth_slope > 0.0)
     goes_on = (
         before.direction * end.pace * after.velocity >= least * end.depth_slope or end.depth <= 0.0
     )

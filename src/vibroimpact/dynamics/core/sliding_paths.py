@@ -242,8 +242,13 @@ def follow_slip(
         path[FRICTION_FORCE, 0] = 0.0
         if friction.at_rim:
             add_rim(curve, grid[0, 3], 0.0, 0.0)
-    microslip = 0.0 if first > 0 else 0.5 * path[VELOCITY, 0] ** 2
-    direction = 1.0 if first > 0 else 0.0
+    # what is lost while it sticks is the energy with which that begins, less that with which that
+    # ends (`begin_sliding`)
+    direction = 0.0
+    microslip = 0.5 * path[VELOCITY, 0] ** 2
+    if first > 0:
+        direction = 1.0
+        microslip = 0.0
     state = SlipState(
         path[VELOCITY, first],
         path[DISPLACEMENT, first],

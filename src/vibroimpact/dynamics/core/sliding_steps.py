@@ -100,6 +100,7 @@ def moved(
     integral: float,
 ) -> SlipState:
     """Return the motion at the end of a step, from velocity and integral at both ends."""
+    # s'' = t'' v + t'^2 (g - k I) at both ends
     bend = start.pace_slope * before.velocity + start.pace * start.pace * (
         friction.pull - friction.stiffness * before.integral
     )
@@ -119,7 +120,9 @@ def paced(normal: NormalState, power: float) -> tuple[float, float]:
     if power == 0.0:
         return normal.pace, normal.pace_slope
     depth = max(normal.depth, _TINY)
-    raised = math.sqrt(depth) if power == 1.0 else depth ** (0.5 * power)
+    raised = math.sqrt(depth)
+    if power != 1.0:
+        raised = depth ** (0.5 * power)
     slope = (
         normal.pace_slope * raised + 0.5 * power * normal.pace * raised / depth * normal.depth_slope
     )
@@ -152,6 +155,8 @@ def stick(
     pull_start_slope *= stiffness
     pull_end *= stiffness
     pull_end_slope *= stiffness
+    # the rule of the module, with v'' and z'' from the equations, is linear in v and z at the end:
+    #   less_end v + back z = right, -forth v + less_end z = right_stretch
     less_start = 1.0 - pull_start * spring_start / 12.0
     less_end = 1.0 - pull_end * spring_end / 12.0
     right = less_start * before.velocity - (0.5 * pull_start + pull_start_slope / 12.0) * stretch
@@ -186,6 +191,8 @@ def slip_at_rim(
     direction = before.direction
     stiffness = friction.stiffness
     pull = friction.pull
+    # the rule of the module for v and s, in which the end of the step enters through I(s) alone:
+    # that is replaced by the tangent of H, and two linear equations are left
     driven = stiffness * direction
     weight = 0.5 * end.pace - end.pace_slope / 12.0
     square = end.pace * end.pace / 12.0

@@ -23,7 +23,10 @@ def least_rate(friction: Friction, grows: bool) -> float:
     """Return the rate of the displacement above which all of a contact slides on, over
     that of the depth, as it grows or shrinks.
     """
-    return 1.0 - (friction.growing if grows else friction.shrinking) / 3.0
+    # at its bound, I = 2/3 D^(3/2), a spring that sticks has I' = (gamma/3 D' + s') sqrt(D), while
+    # the bound rises by D' sqrt(D)
+    power = friction.growing if grows else friction.shrinking
+    return 1.0 - power / 3.0
 
 
 @compiled

@@ -97,6 +97,7 @@ def integral_of_step(
     step: float, rate_before: float, rate: float, bend_before: float, bend: float
 ) -> float:
     """Return the integral over a step of a quantity, from it and its slope at both ends."""
+    # the rule of order four of `sliding_steps`
     return step * (0.5 * (rate + rate_before) + (bend_before - bend) / 12.0)
 
 
@@ -192,6 +193,7 @@ def state_along(
     moved /= sphere.mass
     faster = impulse / sphere.mass
     turn = sphere.radius / sphere.inertia * impulse
+    # `change` comes evenly, up to share * change by now: its way is half of that times the time
     half = 0.5 * time * share
     free_x = begun.velocity_x + 0.5 * sphere.gravity_x * time
     free_y = begun.velocity_y + 0.5 * sphere.gravity_y * time
@@ -237,7 +239,9 @@ def between(start: float, end: float, share: float) -> float:
     """Return the value at a share of a straight line, at its end the very value there: a contact
     that slides has no moment by sticking, which is a difference from one.
     """
-    return end if share == 1.0 else start + share * (end - start)
+    if share == 1.0:
+        return end
+    return start + share * (end - start)
 
 
 @compiled
@@ -258,6 +262,7 @@ def twisted_back(sphere: RubbedSphere, spin: float, normal: NormalPath, path: Ma
     for point in range(rows.shape[1]):
         force = rows[FORCE, point]
         moment = full_moment(twisting, force) / sphere.inertia
+        # full twisting goes with F^(4/3), so that dM/dt = 4/3 M F'/F
         growth = 0.0
         if force > 0.0:
             growth = (4.0 / 3.0) * moment * rows[FORCE_SLOPE, point] / force
@@ -324,7 +329,10 @@ def rolling_change(
         held = min((1.0 - share) * moment, max(sphere.coefficient * impulse - rubbed, 0.0))
     turn = sphere.radius * sphere.radius / sphere.inertia
     slower = (moment - held) * turn
-    part = speed / slower if slower > speed else 1.0
+    # the moment ends with the spin: it takes no more than there is
+    part = 1.0
+    if slower > speed:
+        part = speed / slower
     push = part * held
     faster = push / sphere.mass
     spins = push * sphere.radius / sphere.inertia - part * moment * turn / sphere.radius

@@ -85,7 +85,8 @@ def twisted(
         next_event = until if is_last else motion[part, BEGIN]
         if not (is_last or motion[part, IS_EVENT] > 0.0) or next_event == event > 0.0:
             continue
-        for step in range(0 if point < 0 else 1, _STEPS + 1):
+        first_step = 0 if point < 0 else 1  # a span begins where the last one has ended
+        for step in range(first_step, _STEPS + 1):
             # close to each other where the slip begins or ends
             share_of_span = 0.5 * (1.0 - math.cos(math.pi * step / _STEPS))
             time = event + (next_event - event) * share_of_span

@@ -50,6 +50,7 @@ def static_indentation(
         work = elastic + plastic
         if not (0.0 < static < math.inf and 0.0 < work < delta * static):
             break
+        # force ~ delta^(p - 1), with the exponent p = delta F/work of the work
         step = (weight / static) ** (1.0 / (delta * static / work - 1.0))
         delta *= step
         if abs(step - 1.0) < _TOLERANCE:

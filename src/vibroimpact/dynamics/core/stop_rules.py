@@ -35,7 +35,9 @@ def end_at_time(time: float, flight: FreeFall) -> float:
 @compiled
 def end_after_impacts(number: float, flight: FreeFall, impacts: int) -> float:
     """Return the end of a run after so many impacts [s], at the top of the rebound."""
-    return min(flight.top, flight.touch) if impacts >= number else math.inf
+    if impacts >= number:
+        return min(flight.top, flight.touch)
+    return math.inf
 
 
 @compiled

@@ -11,7 +11,18 @@ import numpy as np
 
 from vibroimpact.arrays import Matrix, Vector
 from vibroimpact.compiled import compiled, force_at
-from vibroimpact.dynamics.core.law import indentation_at, is_in_series, linearise
+from vibroimpact.dynamics.core.law import (
+    APPROACH,
+    BY_DELTA,
+    BY_RATE,
+    DISSIPATIVE,
+    SLOPE,
+    STATIC,
+    STIFFNESS,
+    indentation_at,
+    is_in_series,
+    linearise,
+)
 from vibroimpact.dynamics.core.linear import (
     largest_magnitude_of,
     least_of,
@@ -48,6 +59,7 @@ _CONVERGED = 1e-13
 _STALLED = 1e-11
 # of a Newton step: least size of the next one, as the derivatives are finite differences
 _INEXACT = 1e-6
+_SLOWING = 0.3  # of the last step: a step that is no smaller is rounding
 _TINY = 1e-300
 
 
@@ -84,6 +96,7 @@ def begun_indentations(contacts: Contacts, start: Start, estimates: Vector) -> V
     """Return the indentations of the laws at the start [m] (c,) by one Newton step from
     close estimates.
     """
+    # without a rate, as approach and static force do not depend on it
     found = np.empty(len(estimates))
     linear = np.empty((7, 1))
     still = np.zeros(1)
@@ -92,7 +105,7 @@ def begun_indentations(contacts: Contacts, start: Start, estimates: Vector) -> V
         found[contact] = approach
         if is_in_series(contacts.series[contact]):
             linearise_contact(contacts, contact, estimates[contact : contact + 1], still, linear)
-            nearer = estimates[contact] + (approach - linear[2, 0]) / linear[3, 0]
+            nearer = estimates[contact] + (approach - linear[APPROACH, 0]) / linear[SLOPE, 0]
             found[contact] = max(nearer, contacts.numbers[contact, RELEASE])
     return found
 
@@ -150,7 +163,7 @@ def first_guess(
                 contacts.numbers[contact, SPEED],
                 contacts.coefficients[contact],
             )
-            static[row] = 0.0
+            static[row] = 0.0  # Newton's method takes it from the indentation
             force[row] = of_law + dissipative
     return Nodes(static, force, delta)
 
@@ -205,13 +218,14 @@ def indentations_by(linear: Matrix, motion: Motion, columns: Matrix) -> Matrix:
     if not len(motion.approach_by_static):
         for row in range(size):
             for column in range(columns.shape[1]):
-                found[row, column] /= linear[3, row]
+                found[row, column] /= linear[SLOPE, row]
         return found
+    # static forces move the surface within the contacts: (y' + G_s k) d delta = dy
     matrix = np.empty((size, size))
     for row in range(size):
         for column in range(size):
-            matrix[row, column] = motion.approach_by_static[row, column] * linear[4, column]
-        matrix[row, row] += linear[3, row]
+            matrix[row, column] = motion.approach_by_static[row, column] * linear[STIFFNESS, column]
+        matrix[row, row] += linear[SLOPE, row]
     solve_in_place(matrix, found)
     return found
 
@@ -224,15 +238,73 @@ def write_force_jacobian(linear: Matrix, motion: Motion, by: Matrix, matrix: Mat
     `by`: derivatives of the indentations by the approach that the forces cause, in its first
     columns, as `indentations_by` gives them.
     """
+    # from F = F_law(delta, rate): a force moves its law by d delta/dF = -B and d rate/dF = -R
     size = len(motion.rate)
     for row in range(size):
-        force_by_delta = linear[4, row] + linear[5, row]
+        force_by_delta = linear[STIFFNESS, row] + linear[BY_DELTA, row]
         for column in range(size):
             matrix[row, column] = (
-                linear[6, row] * motion.rate_by_force[row, column]
+                linear[BY_RATE, row] * motion.rate_by_force[row, column]
                 + force_by_delta * by[row, column]
             )
         matrix[row, row] += 1.0
+
+
+@compiled
+def write_end_equation(
+    motion: Motion,
+    linear: Matrix,
+    now: Nodes,
+    by: Matrix,
+    by_length: Matrix,
+    length: float,
+    end: End,
+    last: int,
+    matrix: Matrix,
+    right: Matrix,
+) -> None:
+    """Write the linearised equation of what ends a stretch into the last rows of `matrix` and
+    `right`, divided by its largest coefficient.
+
+    The first arguments, and `by`, are those of `newton_step`; `by_length`: derivatives of approach,
+    rate and closing rate by the length (3, M); `last`: the node at which the stretch ends.
+    """
+    size = len(now.force)
+    unit = _TINY
+    slope = 0.0
+    residual = 0.0
+    for column in range(size):
+        matrix[size, column] = 0.0
+    if end.kind == AT_NO_FORCE:  # F = 0
+        matrix[size, last] = 1.0
+        unit = 1.0
+        residual = now.force[last]
+    elif end.kind == AT_TURN:  # the closing rate, less R F and what static forces take within
+        slope = by_length[2, last]
+        residual = motion.closing[last]
+        for column in range(size):
+            by_rate = motion.rate_by_force[last, column]
+            matrix[size, column] = -by_rate
+            residual -= by_rate * now.force[column]
+            unit = max(unit, abs(by_rate))
+        if len(motion.approach_by_static):
+            for node in range(size):
+                by_static = motion.closing_by_static[last, node]
+                within = by_static * linear[STIFFNESS, node]
+                for column in range(size):
+                    matrix[size, column] += within * by[node, column]
+                slope += within * by[node, size + 1]
+                residual += within * by[node, size] - by_static * linear[STATIC, node]
+    else:  # delta = level, of which the step is that of the eliminated indentation
+        slope = -by[last, size + 1]
+        residual = now.delta[last] - end.level - by[last, size]
+        for column in range(size):
+            matrix[size, column] = -by[last, column]
+            unit = max(unit, abs(by[last, column]))
+    for column in range(size):
+        matrix[size, column] /= unit
+    matrix[size, size] = slope / unit * length
+    right[size, 0] = residual / unit
 
 
 @compiled
@@ -256,18 +328,22 @@ def newton_step(
     """
     size = len(now.force)
     nodes = len(basis.time)
-    inside = len(motion.approach_by_static) > 0
     # approach by forces, residual of the approach, and minus the approach by the length, each
     # divided by that of the indentations
     columns = np.empty((size, size + 2))
     caused = product(motion.approach_by_force, now.force)
-    caused_within = product(motion.approach_by_static, linear[0]) if inside else np.zeros(size)
+    caused_within = np.zeros(size)
+    if len(motion.approach_by_static):
+        caused_within = product(motion.approach_by_static, linear[STATIC])
     missing = np.empty(size)
     for row in range(size):
-        missing[row] = linear[2, row] - motion.approach[row] + caused[row] + caused_within[row]
+        excess = linear[APPROACH, row] - motion.approach[row]
+        missing[row] = excess + caused[row] + caused_within[row]
     by_length = np.zeros((3, size))
     if end.kind != GIVEN_LENGTH:
-        by_length = motion_by_length(basis, surfaces, start, motion, length, now.force, linear[0])
+        by_length = motion_by_length(
+            basis, surfaces, start, motion, length, now.force, linear[STATIC]
+        )
     for row in range(size):
         for column in range(size):
             columns[row, column] = motion.approach_by_force[row, column]
@@ -281,55 +357,23 @@ def newton_step(
     right = np.empty((unknowns, 1))
     write_force_jacobian(linear, motion, by, matrix)
     for row in range(size):
-        force_by_delta = linear[4, row] + linear[5, row]
-        right[row, 0] = (
-            now.force[row] - (linear[0, row] + linear[1, row]) + force_by_delta * by[row, size]
-        )
+        of_law = linear[STATIC, row] + linear[DISSIPATIVE, row]
+        force_by_delta = linear[STIFFNESS, row] + linear[BY_DELTA, row]
+        right[row, 0] = now.force[row] - of_law + force_by_delta * by[row, size]
         if end.kind != GIVEN_LENGTH:
             matrix[row, size] = (
-                force_by_delta * by[row, size + 1] - linear[6, row] * by_length[1, row]
+                force_by_delta * by[row, size + 1] - linear[BY_RATE, row] * by_length[1, row]
             ) * length
     if end.kind != GIVEN_LENGTH:
-        last = (end.contact + 1) * nodes - 1
-        unit = _TINY
-        slope = 0.0
-        residual = 0.0
-        for column in range(size):
-            matrix[size, column] = 0.0
-        if end.kind == AT_NO_FORCE:
-            matrix[size, last] = 1.0
-            unit = 1.0
-            residual = now.force[last]
-        elif end.kind == AT_TURN:
-            slope = by_length[2, last]
-            residual = motion.closing[last]
-            for column in range(size):
-                by_rate = motion.rate_by_force[last, column]
-                matrix[size, column] = -by_rate
-                residual -= by_rate * now.force[column]
-                unit = max(unit, abs(by_rate))
-            if inside:
-                for node in range(size):
-                    by_static = motion.closing_by_static[last, node]
-                    within = by_static * linear[4, node]
-                    for column in range(size):
-                        matrix[size, column] += within * by[node, column]
-                    slope += within * by[node, size + 1]
-                    residual += within * by[node, size] - by_static * linear[0, node]
-        else:
-            slope = -by[last, size + 1]
-            residual = now.delta[last] - end.level - by[last, size]
-            for column in range(size):
-                matrix[size, column] = -by[last, column]
-                unit = max(unit, abs(by[last, column]))
-        for column in range(size):
-            matrix[size, column] /= unit
-        matrix[size, size] = slope / unit * length
-        right[size, 0] = residual / unit
+        last = (end.contact + 1) * nodes - 1  # the node at the end of the stretch
+        write_end_equation(motion, linear, now, by, by_length, length, end, last, matrix, right)
     solve_in_place(matrix, right)
 
     force_step = right[:size, 0].copy()
-    length_step = 0.0 if end.kind == GIVEN_LENGTH else right[size, 0] * length
+    length_step = 0.0
+    if end.kind != GIVEN_LENGTH:
+        length_step = right[size, 0] * length
+    # back substitution into the eliminated equations
     delta_step = np.empty(size)
     for row in range(size):
         change = by[row, size] - by[row, size + 1] * length_step
@@ -356,7 +400,7 @@ def improved(
     """
     linear = linearised_laws(contacts, motion, now)
     # a negative compliance in series that exceeds that of the law makes the problem ill-posed
-    if not least_of(linear[3]) > 0.0:
+    if not least_of(linear[SLOPE]) > 0.0:
         return now, length, np.inf, False
     delta_step, force_step, length_step = newton_step(
         basis, surfaces, start, motion, linear, now, length, end
@@ -368,18 +412,17 @@ def improved(
     largest_step = 0.0
     largest_force = 0.0
     for row in range(size):
-        by_static = linear[4, row] * delta_step[row]
-        static[row] = linear[0, row] - by_static
+        by_static = linear[STIFFNESS, row] * delta_step[row]
+        static[row] = linear[STATIC, row] - by_static
         delta[row] = now.delta[row] - delta_step[row]
         force[row] = now.force[row] - force_step[row]
         largest_step = max(largest_step, max(abs(force_step[row]), abs(by_static)))
         largest_force = max(largest_force, abs(force[row]))
     step_size = largest_step / (scale + largest_force)
     if end.kind != GIVEN_LENGTH:
-        length_step = min(
-            max(length_step, -_LENGTH_FACTOR * length),
-            _LENGTH_FACTOR / (1.0 + _LENGTH_FACTOR) * length,
-        )
+        longest_growth = -_LENGTH_FACTOR * length
+        longest_shrinking = _LENGTH_FACTOR / (1.0 + _LENGTH_FACTOR) * length
+        length_step = min(max(length_step, longest_growth), longest_shrinking)
         length -= length_step
         step_size = max(step_size, abs(length_step) / length)
     return Nodes(static, force, delta), length, step_size, largest_magnitude_of(force) < np.inf
@@ -401,7 +444,7 @@ def is_converged(size: float, last_size: float) -> bool:
     Convergence is quadratic, but for the derivatives.
     """
     next_size = size * min(max((size / last_size) ** 2, _INEXACT), 1.0)
-    return next_size < _CONVERGED or (size < _STALLED and size > 0.3 * last_size)
+    return next_size < _CONVERGED or (size < _STALLED and size > _SLOWING * last_size)
 
 
 @compiled

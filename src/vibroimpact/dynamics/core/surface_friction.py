@@ -301,6 +301,7 @@ def sliding_part(
             - sphere.pull[direction] * moved[direction, last]
         )
         for node in range(nodes):
+            # change of the kinetic energy, less the work of gravity and of friction
             imbalance += (
                 length
                 * basis.integral[last, node]
@@ -308,7 +309,7 @@ def sliding_part(
                 * slowed[direction, node]
                 * velocity[direction, node]
             )
-    imbalance = abs(imbalance)
+    imbalance = abs(imbalance)  # so that it can't cancel that of the spins
     spin = sphere.spin
     turned = sphere.turned
     turned_way = sphere.turned_way

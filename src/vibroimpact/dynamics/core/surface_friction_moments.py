@@ -69,7 +69,9 @@ def twisting_moment(
     history = sphere.history
     contact_radius = math.sqrt(history.radius * depth_under(history, load))
     most = history.coefficient * load
-    used = friction / most if most > 0.0 else 1.0
+    used = 1.0
+    if most > 0.0:
+        used = friction / most
     return float(
         FULL_TWISTING * most * contact_radius * twisting_share(contact_radius * spin, slip, used)
     )

@@ -243,7 +243,8 @@ def first_other_event(
             reach *= (1.0 + _NEAR_TOUCH) * length
             if approach + reach <= march.upcoming.numbers[contact, TOUCH]:
                 continue
-            kinds = (TOUCHES, TOUCHES_DENT if march.has_dent[contact] else NONE)
+            second = TOUCHES_DENT if march.has_dent[contact] else NONE
+            kinds = (TOUCHES, second)
         elif phase == RECOILING:
             kinds = (SEPARATES, PUSHES)
         else:

@@ -134,16 +134,19 @@ def write_stretch(
     parts.time_map[part] = basis.time_map
     parts.roughness[part] = solved.contact.roughness
     nodes = len(basis.time)
+    histories = solved.contact
     for index in range(len(group.contacts)):
         row = add_row(parts, march, group.contacts[index])
-        write_row(parts.static, row, solved.nodes.static[index * nodes : (index + 1) * nodes])
-        write_row(parts.force, row, solved.nodes.force[index * nodes : (index + 1) * nodes])
-        write_row(parts.approach, row, solved.contact.approach[index])
-        write_row(parts.rate, row, solved.contact.rate[index])
-        write_row(parts.closing, row, solved.contact.closing[index])
-        write_row(parts.delta, row, solved.contact.delta[index])
+        first = index * nodes
+        end = first + nodes
+        write_row(parts.static, row, solved.nodes.static[first:end])
+        write_row(parts.force, row, solved.nodes.force[first:end])
+        write_row(parts.approach, row, histories.approach[index])
+        write_row(parts.rate, row, histories.rate[index])
+        write_row(parts.closing, row, histories.closing[index])
+        write_row(parts.delta, row, histories.delta[index])
         parts.work[row] = balance.work[index]
-        parts.dissipated[row] = solved.contact.dissipated[index]
+        parts.dissipated[row] = histories.dissipated[index]
 
 
 @compiled

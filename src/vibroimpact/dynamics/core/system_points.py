@@ -79,7 +79,12 @@ def group_of(points: ContactPoints, contacts: Integers, number: int) -> Group:
             begin = points.first[contact]
             modes = begin + points.rigid[contact]
             end = points.first[contact + 1]
-            for index in range(modes if is_mode else begin, end if is_mode else modes):
+            first = begin
+            last = modes
+            if is_mode:
+                first = modes
+                last = end
+            for index in range(first, last):
                 if place[points.coordinate[index]] < 0:
                     place[points.coordinate[index]] = size
                     size += 1
@@ -156,7 +161,11 @@ def start_of(points: ContactPoints, group: Group, state: State) -> Start:
     for row in range(count):
         approach[row] = points.offset[group.contacts[row]]
         for at in range(len(group.coordinates)):
-            shape = rigid_shapes[row, at] if at < rigid else shapes[0, row, at - rigid]
+            if at < rigid:
+                shape = rigid_shapes[row, at]
+            else:
+                mode = at - rigid
+                shape = shapes[0, row, mode]
             approach[row] += shape * state.displacement[at]
             rate[row] += shape * state.velocity[at]
     return Start(

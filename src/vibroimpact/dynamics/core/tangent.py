@@ -14,6 +14,7 @@ from vibroimpact.arrays import Matrix, Vector
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.attempt import basis_of, surface_start
 from vibroimpact.dynamics.core.contact_records import Bodies, Solved
+from vibroimpact.dynamics.core.law import BY_DELTA, BY_RATE, STIFFNESS
 from vibroimpact.dynamics.core.linear import product, solve_in_place
 from vibroimpact.dynamics.core.path import stretch_path
 from vibroimpact.dynamics.core.receptance import modal_weights, surface_motion
@@ -41,6 +42,8 @@ def force_differences(
         What a varied law changes, at fixed indentations and rates: the approach [m], and the parts
         of the force [N].
     """
+    # the equations of `stretch.newton_step`, linear in the differences: with the indentations
+    # eliminated, (I + D R + K B) dF = changes of the force at fixed forces
     size = len(approach)
     columns = np.empty((size, size + 1))
     missing = motion.approach - approach
@@ -55,8 +58,8 @@ def force_differences(
     right = np.empty((size, 1))
     write_force_jacobian(linear, motion, by, matrix)
     for row in range(size):
-        force_by_delta = linear[4, row] + linear[5, row]
-        changed = static[row] + dissipative[row] + linear[6, row] * motion.rate[row]
+        force_by_delta = linear[STIFFNESS, row] + linear[BY_DELTA, row]
+        changed = static[row] + dissipative[row] + linear[BY_RATE, row] * motion.rate[row]
         right[row, 0] = changed + force_by_delta * by[row, size]
     solve_in_place(matrix, right)
     force = right[:, 0].copy()
@@ -65,7 +68,7 @@ def force_differences(
         deeper = by[row, size]
         for column in range(size):
             deeper -= by[row, column] * force[column]
-        static_difference[row] = static[row] + linear[4, row] * deeper
+        static_difference[row] = static[row] + linear[STIFFNESS, row] * deeper
     return force, static_difference
 
 

@@ -136,6 +136,7 @@ def move_springs(
             y *= covered / covered_before
         x += moved_x * follows
         y += moved_y * follows
+        # the bound of its stretch: mu E*/G* times the integral of D - x^2/R over the spring
         most = history.ratio * (pressed - pressed_before)
         square = x * x + y * y
         if square > most * most:
@@ -172,8 +173,12 @@ def spring_after(
     """
     contact_radius = math.sqrt(history.radius * depth)
     radius_before = math.sqrt(history.radius * history.depth)
-    power = history.growing if contact_radius >= radius_before else history.shrinking
-    kept = (contact_radius / radius_before) ** power if radius_before > 0.0 else 0.0
+    power = history.shrinking
+    if contact_radius >= radius_before:
+        power = history.growing
+    kept = 0.0
+    if radius_before > 0.0:
+        kept = (contact_radius / radius_before) ** power
     # the mean of a^(1 - power) on the way, times a^power at its end
     stiffness = history.stiffness * contact_radius
     if power != 1.0:
@@ -193,6 +198,7 @@ def spring_after(
 @compiled
 def depth_under(history: TangentialHistory, normal_force: float) -> float:
     """Return the depth of Hertz's contact under a normal force [m]."""
+    # F = k D^(3/2)
     return float((max(normal_force, 0.0) / history.hertz) ** (2.0 / 3.0))
 
 

@@ -21,6 +21,8 @@ from vibroimpact.dynamics.core.records import Approach, State, System
 _MOST_STEPS = 100_000
 _MOST_HORIZONS = 10_000
 _SAMPLES = 32
+_FIRST_HORIZON = 1e-6  # s, where surfaces that overlap are at rest to each other
+_NO_GAP = 1e-12  # of the bound of the vibration
 _ROUNDING = 4e-16  # of the sum of the magnitudes of the terms of an approach, or of a time
 
 
@@ -45,12 +47,10 @@ def approach_in(system: System, state: State) -> Approach:
             peak_speed = math.sqrt(
                 state.velocity[coordinate] ** 2 + (frequency * state.displacement[coordinate]) ** 2
             )
-            fastest += (
-                abs(system.shape[coordinate])
-                * peak_speed
-                * frequency
-                * (1.0 + 2.0 * system.ratio[coordinate])
-            )
+            # |q''| = |w^2 q + 2 zeta w v| <= (1 + 2 zeta) w sqrt(v^2 + w^2 q^2)
+            damped = 1.0 + 2.0 * system.ratio[coordinate]
+            fastest += abs(system.shape[coordinate]) * peak_speed * frequency * damped
+    # e = e_0 exp(-r t)
     for element in range(len(state.local)):
         fastest += abs(state.local[element]) * system.rate[element] ** 2
     return Approach(
@@ -63,6 +63,7 @@ def fall_time(approach: float, speed: float, gravity: float, level: float) -> fl
     """Return when a rigid approach reaches a level [s] under gravity; 0 if it already
     has, infinite if it never will.
     """
+    # h = v t + g t^2/2, of whose roots each branch takes the form without cancellation
     height = level - approach
     if height <= 0.0:
         return 0.0
@@ -72,7 +73,9 @@ def fall_time(approach: float, speed: float, gravity: float, level: float) -> fl
     if gravity == 0.0:
         return height / speed if speed > 0.0 else np.inf
     root = math.sqrt(squared)
-    return 2.0 * height / (root + speed) if speed > 0.0 else (root - speed) / gravity
+    if speed > 0.0:
+        return 2.0 * height / (root + speed)
+    return (root - speed) / gravity
 
 
 @compiled
@@ -90,11 +93,14 @@ def time_apart(now: Approach, level: float, gravity: float) -> float:
     opening = -now.rate
     far = fall_time(now.rigid, now.rigid_rate, gravity, level - now.reach)
     most = now.fastest + abs(gravity)
+    near = np.inf
     if most > 0.0:
         root = math.sqrt(opening * opening + 2.0 * most * gap)
-        near = (opening + root) / most if opening >= 0.0 else 2.0 * gap / (root - opening)
-    else:  # no acceleration: without gravity and vibration
-        near = (level - now.approach) / -opening if opening < 0.0 else np.inf
+        near = (opening + root) / most
+        if opening < 0.0:  # the same without cancellation
+            near = 2.0 * gap / (root - opening)
+    elif opening < 0.0:  # no acceleration: without gravity and vibration
+        near = (level - now.approach) / -opening
     return max(far, near)
 
 
@@ -107,7 +113,7 @@ def is_touch(now: Approach, level: float, time: float) -> bool:
 @compiled
 def is_closing(now: Approach, level: float) -> bool:
     """Is a gap about to close where the time cannot tell any more?"""
-    return level - now.approach <= 1e-12 * now.reach or now.rate >= 0.0
+    return level - now.approach <= _NO_GAP * now.reach or now.rate >= 0.0
 
 
 @compiled
@@ -115,7 +121,10 @@ def is_apart(now: Approach, level: float) -> bool:
     """Do surfaces not overlap beyond a level, or by no more than a rounding error where
     they separate?
     """
-    return now.approach <= level + (_ROUNDING * now.terms if now.rate < 0.0 else 0.0)
+    rounding = 0.0
+    if now.rate < 0.0:
+        rounding = _ROUNDING * now.terms
+    return now.approach <= level + rounding
 
 
 @compiled
@@ -141,7 +150,9 @@ def time_to_separation(system: System, state: State, level: float) -> float:
     horizon = 0.0
     before = np.nan
     for _ in range(_MOST_HORIZONS):
-        now = state if time == 0.0 else state_after(system, state, time)
+        now = state
+        if time != 0.0:
+            now = state_after(system, state, time)
         approach = approach_in(system, now)
         horizon = next_horizon(approach, level, horizon, before)
         before = approach.approach
@@ -171,7 +182,9 @@ def next_horizon(now: Approach, level: float, horizon: float, before: float) -> 
     """
     if now.approach == before:
         return 2.0 * horizon
-    return 2.0 * (now.approach - level) / abs(now.rate) if now.rate != 0.0 else 1e-6
+    if now.rate == 0.0:
+        return _FIRST_HORIZON
+    return 2.0 * (now.approach - level) / abs(now.rate)
 
 
 @compiled
@@ -187,7 +200,10 @@ def next_touch(system: System, state: State, level: float, until: float) -> floa
     if not time < until:
         return np.inf
     for _ in range(_MOST_STEPS):
-        now = approach_in(system, state if time == 0.0 else state_after(system, state, time))
+        moved = state
+        if time != 0.0:
+            moved = state_after(system, state, time)
+        now = approach_in(system, moved)
         if is_touch(now, level, time):
             return time
         step = time_apart(now, level, system.gravity)

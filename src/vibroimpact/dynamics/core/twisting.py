@@ -52,7 +52,9 @@ def moment_share(
         Rate of twisting [rad/s], >= 0.
     """
     most = twisting.coefficient * force
-    used = friction / most if most > 0.0 else 1.0
+    used = 1.0
+    if most > 0.0:
+        used = friction / most
     radius = twisting.radius * force ** (1.0 / 3.0)
     return float(twisting_share(radius * spin, slip, used))
 

@@ -164,8 +164,10 @@ def next_flight(
     velocity = drop.state[VELOCITY]
     gravity = drop.state[GRAVITY]
     top = start
-    if velocity > 0.0:
-        top = start + velocity / gravity if gravity != 0.0 else math.inf
+    if velocity > 0.0 and gravity == 0.0:
+        top = math.inf
+    elif velocity > 0.0:
+        top = start + velocity / gravity
     level, _, _, _, _ = levels_at(manner.addresses[2])(drop.coefficients)
     touch = start + next_touch(system, state, level, np.inf)
     return FreeFall(start, top, touch, math.nan, False)
