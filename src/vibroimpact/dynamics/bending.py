@@ -37,9 +37,10 @@ def largest_bending(response: Response) -> float:
     if modes is None or not len(impacts["time_s"]):
         return np.nan
     # kinetic energy of translation and rotation, of modes whose whole is one
-    rotation = 0.0 if modes.rotation is None else (modes.rotation**2).sum(axis=1)
-    translation = (modes.participation**2).sum(axis=1) / modes.mass
-    bends = translation + rotation < _RIGID
+    rigid_part = (modes.participation**2).sum(axis=1) / modes.mass
+    if modes.rotation is not None:
+        rigid_part = rigid_part + (modes.rotation**2).sum(axis=1)
+    bends = rigid_part < _RIGID
     if not bends.any():
         return 0.0
     period = 1.0 / float(modes.frequencies[bends][0])

@@ -43,7 +43,9 @@ def first_touch(problem: Problem) -> float:
         return HardDrop(problem).first_touch()
     gap, velocity = start_of(problem)
     law = problem.law_of(0)
-    level = -law.touch_level if isinstance(law, CompliantLaw) else 0.0
+    level = 0.0
+    if isinstance(law, CompliantLaw):
+        level = -law.touch_level
     flight = first_flights(problem, np.array([gap]), np.array([velocity]))
     touch, _ = flight.touch(np.array([level]))
     return float(touch[0])

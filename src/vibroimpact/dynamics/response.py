@@ -92,9 +92,9 @@ class Response(Reported, EndedRun, reported_in="vibroimpact.runs.response_report
         return len(self.outcomes)
 
     def __repr__(self) -> str:
-        return (
-            f"<Response: {self.status}>" if len(self) == 1 else f"<Response of {len(self)} drops>"
-        )
+        if len(self) == 1:
+            return f"<Response: {self.status}>"
+        return f"<Response of {len(self)} drops>"
 
     def drop(self, index: int) -> Response:
         """Return the response of one drop of a batch, counted from 0.
@@ -109,6 +109,9 @@ class Response(Reported, EndedRun, reported_in="vibroimpact.runs.response_report
         if self.problem.shape == ():
             return self
         happened = np.isfinite(self.impacts["impact"][index])
+        bounces = self.bounces
+        if bounces is not None:
+            bounces = _bounces_of(bounces, index)
         return Response(
             problem=self.problem.take(index),
             impacts={name: column[index, happened] for name, column in self.impacts.items()},
@@ -116,14 +119,16 @@ class Response(Reported, EndedRun, reported_in="vibroimpact.runs.response_report
             outcomes=self.outcomes[index : index + 1],
             end_time=self.end_time[index : index + 1],
             rest=self.rest.take(index),
-            bounces=None if self.bounces is None else _bounces_of(self.bounces, index),
+            bounces=bounces,
         )
 
     def squeezed(self) -> Response:
         """Return the response of a batch of one as that of a single drop."""
         impacts = {name: column[0] for name, column in self.impacts.items()}
         energy = {name: value[0] for name, value in self.energy.items()}
-        bounces = None if self.bounces is None else _bounces_of(self.bounces, 0)
+        bounces = self.bounces
+        if bounces is not None:
+            bounces = _bounces_of(bounces, 0)
         return replace(self, impacts=impacts, energy=energy, bounces=bounces)
 
     @property
@@ -241,13 +246,17 @@ class Response(Reported, EndedRun, reported_in="vibroimpact.runs.response_report
         InputError
             If there is no such column, or the response is of several drops or without histories.
         """
-        points = np.array([len(segment.grid()) for segment in self._segments])
-        kept = points if most is None else points_kept(points, most)
+        segments = self._segments
+        kept = np.array([len(segment.grid()) for segment in segments])
+        if most is not None:
+            kept = points_kept(kept, most)
         history = {name: np.empty(int(kept.sum())) for name in self._names(columns)}
         begin = 0
-        for number, (segment, count) in enumerate(zip(self._segments, kept.tolist(), strict=True)):
+        for number, segment in enumerate(segments):
+            count = int(kept[number])
             times = thinned(segment.grid(), count)
-            for name, values in self._history(number, times, history).items():
+            of_segment = self._history(number, times, history)
+            for name, values in of_segment.items():
                 history[name][begin : begin + count] = values
             begin += count
         if "time_s" in history:  # the times of both sides of an event may differ by rounding
@@ -304,7 +313,9 @@ class Response(Reported, EndedRun, reported_in="vibroimpact.runs.response_report
         """
         from vibroimpact.dynamics.sensors.record import record
 
-        segments = () if isinstance(self._segments, Timeline) else self._segments
+        segments = self._segments
+        if isinstance(segments, Timeline):  # of rigid bodies
+            segments = ()
         return record(
             self.problem, segments, sensors or self.problem.sensors, float(self.end_time[0])
         )
@@ -312,11 +323,15 @@ class Response(Reported, EndedRun, reported_in="vibroimpact.runs.response_report
     @cached_property
     def truncation(self) -> dict[str, float]:
         """Estimated relative error of the largest force by modal truncation, by the body's name."""
-        return truncation_estimates(self.problem, self.impacts) if self.problem.vibrates else {}
+        if not self.problem.vibrates:
+            return {}
+        return truncation_estimates(self.problem, self.impacts)
 
     def _repr_html_(self) -> str | None:
         has_report = self.problem.shape == () and self.bounces is not None
-        return html_summary(self.report) if has_report else None
+        if not has_report:
+            return None
+        return html_summary(self.report)
 
     # the history of one drop, segment by segment
     # ---------------------------------------------------
@@ -355,7 +370,9 @@ class Response(Reported, EndedRun, reported_in="vibroimpact.runs.response_report
             rests_at = segment.start if resting else np.inf
             along = oblique_history(problem, self._bounces[bounce], lost, run_times, rests_at)
             for name, values in along.items():
-                history[name] = values + history[name] if name in history else values
+                if name in history:
+                    values = values + history[name]
+                history[name] = values
         if problem.fluid is not None:
             history |= fluid_history(problem, self._bounces, run_times, history)
         return {name: history[name] for name in columns}
@@ -400,13 +417,15 @@ class Response(Reported, EndedRun, reported_in="vibroimpact.runs.response_report
             if ride is not None:
                 rest = RideSegment(begin, end, ride, begin)
             else:
+                # along the plate a sphere may move on after its bounces
+                points = 2 if self.problem.oblique is None else 97
                 rest = RestSegment(
                     start=begin,
                     end=end,
                     sag=float(self.rest.sag[0]),
                     weight=float(self.problem.sphere.mass) * float(self.problem.net_gravity),
                     stored=float(self.rest.stored[0]),
-                    points=2 if self.problem.oblique is None else 97,
+                    points=points,
                 )
         plastic = self.impacts["plastic_work_J"]
         drive_work = self.impacts.get("plate_work_J", np.zeros(len(plastic)))
@@ -426,4 +445,6 @@ class Response(Reported, EndedRun, reported_in="vibroimpact.runs.response_report
 
 def _bounces_of(bounces: Sequence[Bounce] | BouncesOfDrops, drop: int) -> Sequence[Bounce]:
     """Return the flights and contacts of one drop of a batch."""
-    return bounces if isinstance(bounces, Sequence) else bounces.of(drop)
+    if isinstance(bounces, Sequence):
+        return bounces
+    return bounces.of(drop)

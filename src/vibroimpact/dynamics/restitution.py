@@ -137,7 +137,8 @@ def _by_integration(law: ContactLaw, mass: Array, speed: Array, tolerance: float
             arrays[field.name] = flat(value)
     laws = law.changed(arrays)
     # for a few contacts the compiler takes longer to load than they take in plain Python
-    with interpreted() if len(masses) < FEW else nullcontext():
+    running = interpreted() if len(masses) < FEW else nullcontext()
+    with running:
         conditions = impact_conditions_of(laws, masses, np.zeros(len(masses)), speeds)
     with np.errstate(all="ignore"):  # Newton iterates may overflow
         return np.abs(release_rates(conditions, tolerance) / speeds).reshape(shape)[()]
@@ -219,14 +220,17 @@ def law_achieving(law: Law, restitution: Array, mass: Array, speed: Array) -> La
             f"{law.name} reaches restitutions {reach} at {speed_of_first:.4g} m/s, "
             f"not {target_of_first:g}"
         )
-    return law.changed({name: solution.place if shape else float(solution.place)})
+    place = solution.place if shape else float(solution.place)
+    return law.changed({name: place})
 
 
 def _between(values: Array, digits: int = 4) -> str:
     """Return the range of values in some digits, or their common value."""
     least = float(np.min(values))
     most = float(np.max(values))
-    return f"{least:.{digits}g}" if least == most else f"{least:.{digits}g} to {most:.{digits}g}"
+    if least == most:
+        return f"{least:.{digits}g}"
+    return f"{least:.{digits}g} to {most:.{digits}g}"
 
 
 def _apart(value: float, limit: float) -> str:

@@ -184,7 +184,9 @@ class SystemResponse:
         """Return times as an array of floats; raise unless all lie within the run."""
         try:
             found = np.asarray(times)
-            found = found.astype(float) if found.dtype.kind in "iuf" else np.full(1, np.nan)
+            if found.dtype.kind not in "iuf":
+                found = np.full(1, np.nan)
+            found = found.astype(float)
         except (TypeError, ValueError, OverflowError):
             found = np.full(1, np.nan)
         if not np.all((found >= 0.0) & (found <= self.end_time)):
@@ -322,5 +324,7 @@ def _ledger(motion: IndependentSystems, duration: float) -> dict[str, float]:
         "plastic_work_J": motion.plastic,
     }
     scale = input_energy + max(abs(potential), kinetic)
-    closure = abs(sum(energy.values()) - input_energy) / scale if scale else 0.0
+    closure = 0.0
+    if scale:
+        closure = abs(sum(energy.values()) - input_energy) / scale
     return {**energy, "input_J": input_energy, "closure_relative": closure}

@@ -188,13 +188,18 @@ def _time(run: EndedRun, time: float, significant: int) -> str:
 def _shown(run: EndedRun, value: float, significant: int) -> str:
     """Return a quantity of the last impact in some digits, or in fewer that are certain."""
     change = change_by_impact(run.impacts, run.problem.tolerance)
-    return _digits(value, float(change[-1]) if len(change) else 0.0, significant)
+    last_change = 0.0
+    if len(change):
+        last_change = float(change[-1])
+    return _digits(value, last_change, significant)
 
 
 def _digits(value: float, change: float, significant: int) -> str:
     """Return a value in some digits, or in fewer that are certain under a relative change."""
     figures = int(certain_figures(change))
-    return certain(f"{value:.{significant}g}", value, figures) if figures else f"about {value:.1g}"
+    if not figures:
+        return f"about {value:.1g}"
+    return certain(f"{value:.{significant}g}", value, figures)
 
 
 def end_in_words(end: float) -> str:

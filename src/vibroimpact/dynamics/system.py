@@ -271,7 +271,10 @@ class System:
         """
         bodies = self.bodies.values()
         rigid = [len(body.coordinates()[0]) for body in bodies]
-        modes = [0 if body.modes is None else len(body.modes.frequencies) for body in bodies]
+        modes = []
+        for body in bodies:
+            frequencies = () if body.modes is None else body.modes.frequencies
+            modes.append(len(frequencies))
         ends = np.cumsum([0, *rigid, *modes])
         number = len(rigid)
         return {
@@ -366,7 +369,9 @@ def _array(value: object) -> Floats:
         array = array.astype(float)
     except (TypeError, ValueError, OverflowError):
         return empty
-    return array if array.size and np.all(np.abs(array) < _LARGEST) else empty
+    if array.size and np.all(np.abs(array) < _LARGEST):
+        return array
+    return empty
 
 
 def _vector(name: str, value: object) -> Floats:

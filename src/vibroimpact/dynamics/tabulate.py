@@ -80,8 +80,12 @@ def tabulate(
         parts.append(part)
         if progress is not None:
             progress(min(len(parts) * block / size, 1.0))
-    table = parts[0] if len(parts) == 1 else _joined(stated, parts)
-    return table.squeezed() if stated.shape == () else table
+    table = parts[0]
+    if len(parts) > 1:
+        table = _joined(stated, parts)
+    if stated.shape == ():
+        return table.squeezed()
+    return table
 
 
 def _tables_of(blocks: Sequence[Problem], threads: int) -> Iterator[Response]:

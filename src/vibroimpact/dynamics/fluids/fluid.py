@@ -63,12 +63,12 @@ class Fluid:
         """Return the fluid of one drop of a batch, or of some."""
         if self.shape == ():
             return self
-        return type(self)(
-            **{
-                name: value if np.ndim(value) == 0 else np.asarray(value)[drops]
-                for name, value in self._given()
-            }
-        )
+        taken = {}
+        for name, value in self._given():
+            taken[name] = value
+            if np.ndim(value) > 0:
+                taken[name] = np.asarray(value)[drops]
+        return type(self)(**taken)
 
     @property
     def constant_coefficient(self) -> Array | None:
@@ -104,10 +104,9 @@ class Fluid:
             Of the sphere [m], [kg/m^3].
         """
         fast = np.maximum(speed, STILL)
-        constant = self.constant_coefficient
-        coefficient = (
-            drag_coefficient(self.reynolds_number(fast, radius)) if constant is None else constant
-        )
+        coefficient = self.constant_coefficient
+        if coefficient is None:
+            coefficient = drag_coefficient(self.reynolds_number(fast, radius))
         return self.drag_by_square(radius, density) * coefficient * fast**2
 
     def reynolds_number(self, speed: Array, radius: Array) -> Array:

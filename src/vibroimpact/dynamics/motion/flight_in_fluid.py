@@ -174,12 +174,14 @@ class FluidFlight(Flight):
         """What the spheres fall through, as the core takes it."""
         fluid = self.fluid
         ones = np.ones(len(self.start))
-        constant = fluid.constant_coefficient
+        coefficient = fluid.constant_coefficient
+        if coefficient is None:
+            coefficient = np.nan  # it follows from the Reynolds number
         _, acceleration_along = self.along
         return Falling(
             reynolds=fluid.reynolds_number(ones, self.radius),
             drag=fluid.drag_by_square(self.radius, self.density) * ones,
-            coefficient=(np.nan if constant is None else constant) * ones,
+            coefficient=coefficient * ones,
             inertia=fluid.inertia(self.density) * ones,
             # in the order that the core takes
             gravity=np.ascontiguousarray(np.concatenate([acceleration_along, -self.gravity[None]])),

@@ -71,7 +71,8 @@ def lie(
     times = times.copy()
     states = np.empty((*times.shape, len(SphereState._fields)))
     friction = np.empty((*times.shape, 2))
-    with interpreted() if _are_quick(spheres, starts, pressing) else nullcontext():
+    running = interpreted() if _are_quick(spheres, starts, pressing) else nullcontext()
+    with running:
         lie_on_plate(spheres, starts, pressing, half, times, states, friction)
     return State.of_rows(states.reshape(-1, states.shape[2])), friction.reshape(-1, 2).T, times
 

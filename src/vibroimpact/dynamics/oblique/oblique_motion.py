@@ -116,7 +116,9 @@ class ObliqueMotion:
         if self._motion is not None:
             surface = np.outer(self._motion.direction[:2], self._motion.at(time)[1])
         before = replace(start, velocity=start.velocity - surface)  # seen from the plate
-        law = Coulomb(coefficient=0.0) if self.law is None else self.law
+        law = self.law
+        if law is None:
+            law = Coulomb(coefficient=0.0)
         assert isinstance(law, ImpulsiveFriction)  # others follow a force
         rows = before.rows
         ends = np.empty_like(rows)

@@ -42,6 +42,7 @@ def tangential_history(law: CompliantFriction, largest_force: float) -> Tangenti
     10.0
     """
     growing, shrinking = law.stretching
+    springs = SPRINGS if law.slips_at_rim else 0
     return TangentialHistory(
         at_rim=law.slips_at_rim,
         growing=float(growing),
@@ -54,7 +55,7 @@ def tangential_history(law: CompliantFriction, largest_force: float) -> Tangenti
         sliding_energy=float(law.sliding_energy),
         width=float(law.contact_radius(np.asarray(largest_force))) / SPRINGS,
         depth=0.0,
-        stretch=np.zeros((2, SPRINGS if law.slips_at_rim else 0)),
+        stretch=np.zeros((2, springs)),
         force=np.zeros(2),
         slid=0.0,
     )

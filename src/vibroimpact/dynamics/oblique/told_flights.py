@@ -31,7 +31,9 @@ class ToldFlights:
     """
 
     def __init__(self, problem: Problem, velocity: float) -> None:
-        self.oblique = None if problem.oblique is None else ObliqueMotion(problem)
+        self.oblique: ObliqueMotion | None = None
+        if problem.oblique is not None:
+            self.oblique = ObliqueMotion(problem)
         self.to_fluid = 0.0
         self._problem = problem
         self._mass = float(problem.sphere.mass)
@@ -57,7 +59,9 @@ class ToldFlights:
         top = float(flight.apex()[0][0])
         fall = FreeFall(float(flight.start[0]), top, touch, np.nan, is_beside)
         end, ending = first_end(self._stops, fall, impacts)
-        return (end, ending) if touch >= end else (touch, AT_TOUCH)
+        if touch >= end:
+            return end, ending
+        return touch, AT_TOUCH
 
     def fly(self, flight: Flight, time: float) -> dict[str, float]:
         """Make a flight up to a time [s], and return what it adds to the row of the next impact."""
@@ -88,7 +92,9 @@ class ToldFlights:
 
     def energies_along(self) -> dict[str, float]:
         """Return the entries of the motion along the plate in the energy ledger [J], if any."""
-        return {} if self.oblique is None else self.oblique.energies()
+        if self.oblique is None:
+            return {}
+        return self.oblique.energies()
 
     def entries(self, velocity: float) -> dict[str, float]:
         """Return what flights add to the entries of the energy ledger [J].

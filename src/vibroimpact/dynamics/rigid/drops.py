@@ -68,11 +68,15 @@ def follow(
         oblique = _along_at_start(problem, held)
         manner = _manner_of(problem)
         start = _start_of(drops, oblique)
-        in_fluid = None if problem.fluid is None else FluidDrops(problem, drops, oblique)
+        in_fluid = None
+        if problem.fluid is not None:
+            in_fluid = FluidDrops(problem, drops, oblique)
         energy_in = _energy_of(problem, drops, start)
         while True:
             room = drops.rows.shape[1]
-            pause = room if progress is None else min(int(drops.impacts.max()) + 1, room)
+            pause = room
+            if progress is not None:  # which is called after each impact
+                pause = min(int(drops.impacts.max()) + 1, room)
             impacts_before = drops.impacts.copy()
             if oblique is None:
                 follow_drops(manner, drops, pause)
@@ -124,7 +128,9 @@ def _at_start(problem: Problem, held: ExitStack) -> Drops:
     state[:, records.RADIUS] = problem.sphere.contact_offset
     state[:, records.GRAVITY] = problem.net_gravity
     state[:, records.INERTIA] = problem.flight_inertia
-    state[:, records.REST_SPEED] = np.nan if problem.rest_speed is None else problem.rest_speed
+    state[:, records.REST_SPEED] = np.nan
+    if problem.rest_speed is not None:
+        state[:, records.REST_SPEED] = problem.rest_speed
     state[:, records.REST_TIME] = np.nan
     state[:, records.END_TIME] = np.nan
     if problem.height is None:
@@ -138,7 +144,9 @@ def _at_start(problem: Problem, held: ExitStack) -> Drops:
             [held.enter_context(coefficients_of(law, size)) for law in laws_of(problem)], axis=1
         )
     room = min(problem.impacts or MOST_IMPACTS, _FIRST_ROOM)
-    columns = records.COLUMNS if problem.oblique is None else records.OBLIQUE_COLUMNS
+    columns = records.COLUMNS
+    if problem.oblique is not None:
+        columns = records.OBLIQUE_COLUMNS
     rows = np.full((size, room, columns), np.nan)
     return Drops(
         phases=np.full(size, records.AT_START),
@@ -230,8 +238,9 @@ def _law_at(problem: Problem, number: int, drops: Indices, speed: Floats) -> Con
     """Return the law of an impact, counted from 0, of some drops at their approach speeds [m/s]."""
     laws = laws_of(problem)
     law = laws[min(number, len(laws) - 1)].take(drops)
-    of_drops = problem if problem.liquid is None else problem.take(drops)
-    return of_drops.law_at_touch(law, speed)
+    if problem.liquid is not None:  # whose mass that moves along differs by drop
+        problem = problem.take(drops)
+    return problem.law_at_touch(law, speed)
 
 
 def _is_asked_at_touch(problem: Problem) -> bool:
@@ -332,7 +341,9 @@ def _lie(problem: Problem, drops: Drops, oblique: ObliqueDrops, end_time: Floats
     sphere = spheres_of(problem).take(resting)
     before = State.of_rows(oblique.along[resting])
     friction = problem.oblique.friction
-    law = None if friction is None else friction.take(resting)
+    law = friction
+    if friction is not None:
+        law = friction.take(resting)
     elapsed = np.maximum(end_time[resting] - time, 0.0)
     pressing = drops.state[resting, records.GRAVITY]
     half = _half_sides(problem)
@@ -421,7 +432,9 @@ def _ledger(
     if along:
         added += np.maximum(-along["potential_J"], 0.0)  # what gravity did down the plate
     for name, values in along.items():
-        entries[name] = entries[name] + values if name in entries else values
+        if name in entries:
+            values = entries[name] + values
+        entries[name] = values
     energy_in = ended.energy_in
     in_fluid = ended.in_fluid
     if in_fluid is not None:

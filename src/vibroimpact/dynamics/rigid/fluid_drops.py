@@ -164,16 +164,20 @@ class FluidDrops:
         assert self._oblique is not None  # they move along the plate
         assert self._sphere is not None
         touch, _ = flight.touch(np.zeros(1))
-        here = State.of_rows(self._oblique.along[numbers])
-        with np.errstate(invalid="ignore"):
-            there = flight.carry(self._sphere.take(numbers), here, touch)
-            distance = np.nan_to_num(np.hypot(*(there.position - here.position)))
+        start = State.of_rows(self._oblique.along[numbers])
+        with np.errstate(invalid="ignore"):  # of flights without another touch
+            end = flight.carry(self._sphere.take(numbers), start, touch)
+            moved_x, moved_y = end.position - start.position
+            distance = np.nan_to_num(np.hypot(moved_x, moved_y))
         impacts = drops.impacts[numbers]
-        indentation = np.nan_to_num(drops.rows[numbers, impacts - 1, records.INDENTATION])
-        radius = np.sqrt(drops.state[numbers, records.RADIUS] * indentation)
-        leaving = distance > radius
+        last = impacts - 1
+        indentation = np.nan_to_num(drops.rows[numbers, last, records.INDENTATION])
+        # Hertz: a^2 = R delta
+        contact_radius = np.sqrt(drops.state[numbers, records.RADIUS] * indentation)
+        leaving = distance > contact_radius
         drops.state[numbers[leaving], records.DENT] = 0.0
-        fresh = drops.laws[numbers, np.minimum(impacts, drops.laws.shape[1] - 1)]
+        last_law = drops.laws.shape[1] - 1
+        fresh = drops.laws[numbers, np.minimum(impacts, last_law)]
         drops.coefficients[numbers[leaving]] = fresh[leaving]
 
     def lost_before_impacts(self, most: int) -> Floats:

@@ -44,23 +44,27 @@ def rigid_history(
         acceleration = force / mass - gravity
     # a hard sphere that rides does not indent the plate, which moves under it
     indents = not isinstance(segment, FlightSegment | RideSegment)
+    indentation = -gap if indents else zeros
+    lost_at_rest = written_off if resting else 0.0
     columns = {
         "time_s": segment.start + times,
         "position_m": float(problem.sphere.contact_offset) + gap,
         "velocity_m_s": velocity,
         "acceleration_m_s2": acceleration,
         "force_N": force,
-        "indentation_m": -gap if indents else zeros,
+        "indentation_m": indentation,
         "kinetic_J": 0.5 * mass * velocity**2,
         "potential_J": mass * gravity * gap,
         "contact_elastic_J": stored,
         "contact_dissipated_J": dissipated_before + dissipated,
         "plastic_work_J": plastic_before + plastic,
-        "written_off_at_rest_J": np.full_like(times, written_off if resting else 0.0),
+        "written_off_at_rest_J": np.full_like(times, lost_at_rest),
     }
     if problem.motion is not None:
         surface, surface_velocity, _ = problem.surface(columns["time_s"])
-        work = segment.drive_work(times) if isinstance(segment, RideSegment) else 0.0 * times
+        work = zeros
+        if isinstance(segment, RideSegment):
+            work = segment.drive_work(times)
         columns["surface_m"] = surface
         columns["surface_velocity_m_s"] = surface_velocity
         columns["drive_J"] = drive_before - work

@@ -250,7 +250,9 @@ class LineMotion:
     @property
     def begins(self) -> float:
         """Time since touch at which it begins [s]."""
-        return 0.0 if self.phase == "compression" else self.recorded.contact.time_of_deepest
+        if self.phase == "compression":
+            return 0.0
+        return self.recorded.contact.time_of_deepest
 
     def grid(self) -> Floats:
         """Return times since the start at which the motion is well resolved [s].

@@ -158,13 +158,14 @@ def _write_kind(
     vectors[records.PER_FACTOR, :count] = 1.0 / factor
     # the shape s of the indentation, (1 - y^2)^p, and its slope over f
     vectors[records.SHAPE, :count] = (1.0 - nodes**2) ** power
-    vectors[records.SHAPE, count:] = 1.0 if inward else 0.0
+    known_end = 1.0 if inward else 0.0  # the y at which the motion is known
+    vectors[records.SHAPE, count:] = known_end
     vectors[records.FALL, :count] = -2.0 * nodes / factor * power * (1.0 - nodes**2) ** (power - 1)
     vectors[records.WEIGHT, :count] = weights
     vectors[records.LAST, :count] = spectrum[-1]
     vectors[records.BEFORE_LAST, :count] = spectrum[-2]
 
-    integral = _integrals(spectrum, points, 1.0 if inward else 0.0)
+    integral = _integrals(spectrum, points, known_end)
     to_square = integral
     if turns:
         times_y: Floats = np.stack(

@@ -65,8 +65,11 @@ class RecordedDrops:
 
     def of(self, drop: int) -> RecordedDrop:
         """Return what it wrote of one drop."""
+        problem = self.problem
+        if problem.shape != ():
+            problem = problem.take(drop)
         return RecordedDrop(
-            problem=self.problem if self.problem.shape == () else self.problem.take(drop),
+            problem=problem,
             start=self.start.take(drop),
             flights=int(self.flights[drop]),
             rows=self.rows[drop, : self.impacts[drop]].copy(),
@@ -184,7 +187,9 @@ class RecordedDrop(MadeBounces[Bounce]):
             return law
         law = law.changed(self.problem.laws[0].memories())
         dent = self.rows[number, [records.DENT_BEFORE]]
-        return law.after_compression(dent) if dent > 0.0 else law
+        if dent > 0.0:
+            law = law.after_compression(dent)
+        return law
 
 
 def _released_along(row: Floats) -> State:

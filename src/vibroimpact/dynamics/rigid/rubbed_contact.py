@@ -149,16 +149,19 @@ class RubbedContact:
         """Return states of one drop, friction on it [N] (2, T) and energy taken [J] (T,), at
         times since first touch [s] (T,).
         """
+        sphere = self.sphere
+        before = self.before
         if self.law is None:
-            state = self.sphere.fly(self.before, np.minimum(time, self.duration))
-            return state, np.zeros((2, len(time))), np.zeros(len(time))
+            state = sphere.fly(before, np.minimum(time, self.duration))
+            no_friction = np.zeros((2, len(time)))
+            return state, no_friction, np.zeros(len(time))
         times, path = self._path
         now = np.minimum(time, times[-1])
         if isinstance(path, ResistedPath):
-            state, friction = _within_resisted(self.sphere, self.before, times, path, now)
+            state, friction = _within_resisted(sphere, before, times, path, now)
         else:
-            state, friction = _within_slid(self.sphere, self.before, times, path, now)
-        return state, friction, energy_taken(self.sphere, self.before, state)
+            state, friction = _within_slid(sphere, before, times, path, now)
+        return state, friction, energy_taken(sphere, before, state)
 
     @cached_property
     def _path(self) -> tuple[Floats, SlidPath | ResistedPath]:
@@ -217,13 +220,20 @@ def _within_resisted(
     from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
     # of a force that jumps what comes after it
-    passed = np.flatnonzero(np.append(np.diff(times) > 0.0, True))
-    times = times[passed]
-    velocity = path.velocity[passed].T
-    turning = path.turning[passed].T
-    spins = np.stack([turning[1] / sphere.radius, -turning[0] / sphere.radius, path.spin[passed]])
-    position = before.position + path.moved[passed].T
-    moved = CubicHermiteSpline(times, position, velocity, axis=1)
-    rest = np.concatenate([velocity, spins, -path.friction[passed].T])
-    smooth = PchipInterpolator(times, rest, axis=1)(now)
-    return State(moved(now), smooth[:2], smooth[2:5]), smooth[5:]
+    kept = np.append(np.diff(times) > 0.0, True)
+    times = times[kept]
+    position = before.position + path.moved[kept].T
+    velocity = path.velocity[kept].T
+    # w is the velocity that the spin gives the contact point: w_x = -R omega_y, w_y = R omega_x
+    turning_x, turning_y = path.turning[kept].T
+    spin_x = turning_y / sphere.radius
+    spin_y = -turning_x / sphere.radius
+    spins = np.stack([spin_x, spin_y, path.spin[kept]])
+    friction = -path.friction[kept].T
+
+    position_at = CubicHermiteSpline(times, position, velocity, axis=1)
+    # without overshoot where friction or a spin has a kink
+    others = np.concatenate([velocity, spins, friction])
+    others_at = PchipInterpolator(times, others, axis=1)
+    velocity_now, spins_now, friction_now = np.split(others_at(now), [2, 5])
+    return State(position_at(now), velocity_now, spins_now), friction_now

@@ -214,9 +214,11 @@ def _responses(
         [sensor.order],
         (*sensor.sections, *antialias.sections),
     )
-    instrument_gain = sensor.instrument.gain if sensor.instrument else 1.0
-    amplifier_gain = sensor.amplifier.gain if sensor.amplifier else 1.0
-    gain = instrument_gain * amplifier_gain
+    gain = 1.0
+    if sensor.instrument:
+        gain = sensor.instrument.gain
+    if sensor.amplifier:
+        gain *= sensor.amplifier.gain
     if antialias.half_length:
         return -gain * filtered_chain(chain, sensor.rate, duration).answers[:, 0]
     return -gain * _at_instants(chain, sensor.rate, duration)

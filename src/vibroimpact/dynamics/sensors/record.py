@@ -127,7 +127,9 @@ def _check(problem: Problem, sensors: Sequence[Sensor], end: float) -> None:
             )
         _check_point(modes, sensor)
         limited = _limited(sensor)
-        rate = sensor.rate if limited is None else finer_rate(sensor.rate, limited.resonance)
+        rate = sensor.rate
+        if limited is not None:
+            rate = finer_rate(sensor.rate, limited.resonance)
         if rate == sensor.rate:
             count = sum(sample_count(end, each.rate) for each in sensors)
             subject = "of all sensors"
@@ -368,4 +370,6 @@ def _digitised(sensor: Sensor, value: Floats) -> Floats:
     if amplifier is not None:
         passed = gain_at(sensor, amplifier.mains)
         value = amplified(amplifier, sensor.name, value, sensor.rate, passed)
-    return value if sensor.converter is None else sensor.converter.read(value)
+    if sensor.converter is None:
+        return value
+    return sensor.converter.read(value)

@@ -123,7 +123,9 @@ def around_first_contact(segments: Sequence[VibratingSegment], rate: float) -> f
     if True not in in_contact:
         return reach
     first = in_contact.index(True)
-    after = in_contact.index(False, first) if False in in_contact[first:] else len(in_contact)
+    after = len(in_contact)
+    if False in in_contact[first:]:
+        after = in_contact.index(False, first)
     return max(reach, segments[after - 1].end - segments[first].start)
 
 
@@ -319,7 +321,9 @@ def _spans(
 
     Neighbouring contacts are combined up to a length [s], by default the filter's reach.
     """
-    reach = HALF_LENGTH / rate if longest is None else longest
+    reach = longest
+    if reach is None:
+        reach = HALF_LENGTH / rate
     instrument_state = np.zeros((2, chain.oscillators.number - chain.modes))
     fastest = max(
         2.0 * np.pi * _PASS_BAND * rate,

@@ -96,7 +96,8 @@ def heard(
     ]
     finer_count = max(0, _FINER * (count - 1) - kernels.first + HALF_LENGTH + 1)
     pressure = np.zeros(finer_count + kernels.lags.shape[1] - 1)
-    for begin in range(0, len(kernels.shapes) if finer_count else 0, _AT_ONCE):
+    number = len(kernels.shapes) if finer_count else 0
+    for begin in range(0, number, _AT_ONCE):
         combinations = slice(begin, begin + _AT_ONCE)
         chain = _chain(plate, kernels.shapes[combinations], rate, delayed)
         accelerations = sample_filtered(chain, ports, delayed, range(finer_count))
@@ -130,7 +131,9 @@ def _uncertainty(
 
     norm_of_kept = norm(plate, kernels.shapes)
     norm_of_left_out = norm(*next_octave(plate, kernels.shapes))
-    return norm_of_left_out / norm_of_kept if norm_of_kept else 0.0
+    if not norm_of_kept:
+        return 0.0
+    return norm_of_left_out / norm_of_kept
 
 
 def _chain(
@@ -153,15 +156,19 @@ def _chain(
 def _kernels(problem: Problem, sensor: Sensor) -> _Kernels:
     """Return the kernels of the modes for a microphone."""
     paths = [basis.sounds[sensor.name] for basis in bases_of_plate(problem)]
+    weights = np.concatenate([path.weights for path in paths])
     delays = paths[0].delays * sensor.rate  # in samples
     first = round(_FINER * (delays[0] - HALF_LENGTH))
     last = round(_FINER * (delays[-1] + HALF_LENGTH))
     lags = np.arange(first, last + 1) / _FINER
-    weights = np.concatenate([path.weights for path in paths])
-    of_modes = weights @ kernel(lags - delays[:, None]) / _FINER
+    # k of the module, whose integrals are sums over finer samples
+    of_delays = kernel(lags - delays[:, None])
+    of_modes = weights @ of_delays / _FINER
+    # as few of them are independent as there are delays
     modes, singular_values, combinations = np.linalg.svd(of_modes, full_matrices=False)
     kept = singular_values > _NEGLIGIBLE * singular_values[0]
-    return _Kernels((modes[:, kept] * singular_values[kept]).T, combinations[kept], first)
+    shapes = (modes[:, kept] * singular_values[kept]).T
+    return _Kernels(shapes, combinations[kept], first)
 
 
 def _convolved(accelerations: Floats, lags: Floats) -> Floats:

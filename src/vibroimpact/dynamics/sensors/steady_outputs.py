@@ -76,7 +76,8 @@ def steady_outputs(
     outputs = np.stack(elements, axis=1)
     values = np.zeros((len(sensors), len(samples)))
     # the gains of the filter are for its output so many samples later
-    first = samples.start - (HALF_LENGTH if converted else 0)
+    lead = HALF_LENGTH if converted else 0
+    first = samples.start - lead
     blocks_of(oscillators, outputs, rate).sample(values, start, first / rate)
     return values
 
@@ -88,7 +89,9 @@ def _phasors(motion: PlateMotion, modes: ModalBasis | None, sensor: Sensor) -> C
     """
     direction = np.asarray(sensor.components)
     # the supports move the plate as a whole, which does not strain it
-    along = 0.0 if sensor.subject == "strain" else float(direction @ motion.direction)
+    along = 0.0
+    if sensor.subject != "strain":
+        along = float(direction @ motion.direction)
     supports = along * motion.phasors
     if modes is None:
         return supports

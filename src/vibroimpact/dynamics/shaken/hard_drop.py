@@ -128,19 +128,23 @@ class HardDrop:
 
     def _time_to_touch(self, flight: Flight) -> float:
         """Return the time from the start of a flight to its touch [s]."""
-        free = free_motion(self._system, self._state(self.time, self.gap, self.velocity), flight)
+        start = self._state(self.time, self.gap, self.velocity)
+        free = free_motion(self._system, start, flight)
         fastest = float(self._system.angular_frequency.max())
-        least_gap = _GAP * float(np.abs(self.problem.surface_phasors).sum())
-        skipped = 0.0
+        amplitude = float(np.abs(self.problem.surface_phasors).sum())
+        least_gap = _GAP * amplitude
         approach, rate = free.motion(np.array(0.0))
-        if max(abs(float(approach[0])), abs(float(rate[0])) / fastest) <= least_gap:
-            # a launch: the plate falls away with the third power of time, and the gap is rounding
-            # at first
-            times = _FIRST_TIME / fastest * np.exp2(np.arange(20))
-            gaps = -free.motion(times)[0][:, 0]
-            skipped = float(times[np.argmax(gaps > least_gap)])
-            free = free.after(skipped)
-        return skipped + next_touch(free, 0.0, np.inf)
+        gap = abs(float(approach[0]))
+        opened_in_a_radian = abs(float(rate[0])) / fastest
+        if max(gap, opened_in_a_radian) > least_gap:
+            return next_touch(free, 0.0, np.inf)
+        # a launch: the plate falls away with the third power of time, and the gap is rounding at
+        # first
+        times = _FIRST_TIME / fastest * np.exp2(np.arange(20))
+        approaches, _ = free.motion(times)
+        is_open = -approaches[:, 0] > least_gap
+        skipped = float(times[np.argmax(is_open)])
+        return skipped + next_touch(free.after(skipped), 0.0, np.inf)
 
     def _state(self, time: float, gap: float, velocity: float) -> State:
         """Return the state of sphere and plate at a time [s]."""
@@ -191,7 +195,8 @@ class HardDrop:
         end = float(ride.end[0])
         rides = end > touch
         # the plate works on the impulse of the impact, and on the sphere that it carries
-        impulse = self.mass * (speed + (0.0 if rides else separation))
+        separating = 0.0 if rides else separation
+        impulse = self.mass * (speed + separating)
         work += impulse * surface_velocity
         if rides and np.isfinite(end):
             work += self._carried(ride, end) - self._carried(ride, touch)
@@ -290,8 +295,12 @@ class HardDrop:
 
         From a shaken plate the sphere does not rise with its velocity relative to the plate.
         """
-        rising = 0.0 if np.isfinite(self._rides_since) else max(self.velocity, 0.0)
-        rise = 0.5 * rising**2 / self.gravity if self.gravity > 0.0 else np.nan
+        rising = max(self.velocity, 0.0)
+        if np.isfinite(self._rides_since):
+            rising = 0.0
+        rise = np.nan
+        if self.gravity > 0.0:
+            rise = 0.5 * rising**2 / self.gravity
         if self.problem.fluid is not None and rising > 0.0:
             rise = float(self._flight().apex()[1][0]) - self.gap
         return self.radius + self.gap + rise

@@ -51,10 +51,15 @@ def _ended_run(problem: Problem, drops: Sequence[HardDrop], *, keeps_bounces: bo
     holds = ledger_holds(energy, added)
     if problem.oblique is not None:
         energy |= friction_parts(entries["friction_J"], np.zeros(len(drops)))
-    outcomes = [
-        drop.outcome if held and drop.outcome is not None else Outcome.FAILED
-        for drop, held in zip(drops, holds.tolist(), strict=True)
-    ]
+    outcomes = []
+    for drop, held in zip(drops, holds.tolist(), strict=True):
+        outcome = drop.outcome
+        if outcome is None or not held:
+            outcome = Outcome.FAILED
+        outcomes.append(outcome)
+    bounces = None
+    if keeps_bounces:
+        bounces = BouncesOfSeveral([drop.bounces for drop in drops])
     none = np.zeros(len(drops))
     rest = Rest(
         speed=np.array([drop.rest_speed for drop in drops]),
@@ -73,5 +78,5 @@ def _ended_run(problem: Problem, drops: Sequence[HardDrop], *, keeps_bounces: bo
         tuple(outcomes),
         np.array([drop.end_time for drop in drops]),
         rest,
-        BouncesOfSeveral([drop.bounces for drop in drops]) if keeps_bounces else None,
+        bounces,
     )

@@ -127,14 +127,15 @@ class Oblique:
         """Return what one drop of a batch has, or some."""
 
         def one(value: Any) -> Any:
-            return value if np.ndim(value) == 0 else np.asarray(value)[drop]
+            if np.ndim(value) == 0:
+                return value
+            return np.asarray(value)[drop]
 
-        return replace(
-            self,
-            **{
-                name: tuple(one(value) for value in getattr(self, name))
-                for name in ("velocity", "spin", "position", "gravity")
-            },
-            friction=None if self.friction is None else self.friction.take(drop),
-            inertia_ratio=one(self.inertia_ratio),
-        )
+        vectors = {
+            name: tuple(one(value) for value in getattr(self, name))
+            for name in ("velocity", "spin", "position", "gravity")
+        }
+        friction = self.friction
+        if friction is not None:
+            friction = friction.take(drop)
+        return replace(self, **vectors, friction=friction, inertia_ratio=one(self.inertia_ratio))

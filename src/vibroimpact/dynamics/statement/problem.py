@@ -453,7 +453,9 @@ class Problem:
         """Moment of inertia of the sphere over its mass and the square of its radius [-]."""
         if self.sphere.inertia is not None:
             return self.sphere.inertia / self._unit_inertia
-        return SOLID if self.oblique is None else self.oblique.inertia_ratio
+        if self.oblique is None:
+            return SOLID
+        return self.oblique.inertia_ratio
 
     @property
     def _unit_inertia(self) -> Array:
@@ -463,7 +465,9 @@ class Problem:
     @property
     def net_weight(self) -> Array:
         """Weight of the sphere, less its buoyancy, over that in a vacuum [-]."""
-        return 1.0 if self.fluid is None else self.fluid.weight(self.sphere_density)
+        if self.fluid is None:
+            return 1.0
+        return self.fluid.weight(self.sphere_density)
 
     @property
     def net_gravity(self) -> Array:
@@ -476,7 +480,9 @@ class Problem:
 
         It includes that of a liquid that moves along.
         """
-        return 1.0 if self.fluid is None else self.fluid.inertia(self.sphere_density)
+        if self.fluid is None:
+            return 1.0
+        return self.fluid.inertia(self.sphere_density)
 
     @property
     def vibrates(self) -> bool:
@@ -523,7 +529,8 @@ class Problem:
         values = [self.height, self.velocity, self.speed, self.gravity, self.rest_speed]
         values += [self.sphere.mass, self.sphere.contact_offset, self.sphere.inertia]
         values += [getattr(law, item.name) for law in self.laws for item in fields(law)]
-        values += [] if self.oblique is None else self.oblique.values
+        if self.oblique is not None:
+            values += self.oblique.values
         values += [
             value
             for fluid in (self.air, self.liquid)
@@ -568,7 +575,12 @@ class Problem:
         """Return the problem of one drop of a batch, or of some."""
 
         def one(value: Any) -> Any:
-            return value if np.ndim(value) == 0 else np.asarray(value)[drop]
+            if np.ndim(value) == 0:
+                return value
+            return np.asarray(value)[drop]
+
+        def of_drop(stated: Any) -> Any:
+            return None if stated is None else stated.take(drop)
 
         def part(body: Body) -> Body:
             return replace(
@@ -588,9 +600,9 @@ class Problem:
             speed=one(self.speed),
             gravity=one(self.gravity),
             rest_speed=one(self.rest_speed),
-            oblique=None if self.oblique is None else self.oblique.take(drop),
-            air=None if self.air is None else self.air.take(drop),
-            liquid=None if self.liquid is None else self.liquid.take(drop),
+            oblique=of_drop(self.oblique),
+            air=of_drop(self.air),
+            liquid=of_drop(self.liquid),
         )
 
     def on_plate(self, plate: Body, quasi_static: QuasiStatic) -> Problem:

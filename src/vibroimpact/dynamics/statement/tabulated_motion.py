@@ -59,10 +59,14 @@ def tabulated_motion(
     time = step * order
     # sines have a slope at the start alone, and cosines at the end alone; their means cancel in
     # pairs
-    omega = (_HALF_WAVES * (1 + last // 128) + 0.5) * np.pi / length
-    waves = np.concatenate([np.sin(omega[:, None] * time), np.cos(omega[:, None] * time)])
+    half_waves = _HALF_WAVES * (1 + last // 128) + 0.5
+    omega = half_waves * np.pi / length
+    angles = omega[:, None] * time
+    waves = np.concatenate([np.sin(angles), np.cos(angles)])
+    # integrals over the record: 1/omega of a sine, as its cosine is zero at the end
     means = np.concatenate([1.0 / omega, np.sin(omega * length) / omega])
-    pairs = np.kron(np.eye(2), [[1.0, -1.0, 0.0], [0.0, 1.0, -1.0]]) / means
+    neighbours = [[1.0, -1.0, 0.0], [0.0, 1.0, -1.0]]
+    pairs = np.kron(np.eye(2), neighbours) / means
     spectra = dct(np.vstack([pairs @ waves, displacement]), 1, axis=1) / last
     pair_spectra = spectra[:-1]
     spectrum = spectra[-1]
@@ -74,9 +78,11 @@ def tabulated_motion(
     significant = np.where(np.abs(components) > _SIGNIFICANT * noise, components, 0.0)
     pair_amplitudes = significant / singular_values @ right
     cosines = spectrum - pair_amplitudes @ pair_spectra
-    cosines[-1] *= 0.5
-    frequency = np.concatenate([omega, omega, np.pi / length * order[1:]]) / (2.0 * np.pi)
+    cosines[-1] *= 0.5  # the first kind counts the last cosine twice
+    cosine_omega = np.pi / length * order[1:]
+    frequency = np.concatenate([omega, omega, cosine_omega]) / (2.0 * np.pi)
     amplitude = np.concatenate([pair_amplitudes @ pairs, cosines[1:]])
+    # an amplitude is positive: half a turn of the phase stands for its sign
     is_sine = np.arange(len(amplitude)) < len(omega)
     phase = np.where(is_sine, 0.0, 0.5 * np.pi) + np.pi * (amplitude < 0.0)
     return _motion(np.abs(amplitude), frequency, phase, direction)

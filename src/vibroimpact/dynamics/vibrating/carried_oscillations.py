@@ -74,6 +74,7 @@ class SteadyResponse:
     def _force_phasors(self) -> Complex:
         """Phasors of the contact force per unit of each driven coordinate (d,)."""
         stiffness, damping = self.still.contact
+        # spring and dashpot of the contact in series with the compliance of both bodies
         contact_stiffness = stiffness + 1j * damping * self.driving.angular_frequency
         compliance = self._compliance
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -129,6 +130,7 @@ class SteadyResponse:
             amplitudes @ np.abs(self._force_phasors - self._rigid_contact_force_phasors)
         )
         margin = REST_MARGIN * least_force - effect_of_compliance
+        # of the force from that of the steady motion
         deviation = abs(force - self.still.weight - float(self.force(phasors)))
         # the bound over all later times takes the coupled modes, and comes last
         return deviation < margin and self.still.force_bound(self.deviation(state)) < margin

@@ -94,10 +94,11 @@ def rides_for_good(equilibrium: ContactEquilibrium, state: State, force: float) 
     carrying_force = equilibrium.weight + mass * float(acceleration)
     stiffness, _ = equilibrium.contact
     # a speed v on a spring causes a force of amplitude v sqrt(k m)
-    oscillation = abs(force - carrying_force) + np.sqrt(stiffness * mass) * abs(
-        float(system.rates(state)[0])
-    )
-    return bool(oscillation < REST_MARGIN * (equilibrium.weight - mass * greatest_acceleration))
+    impedance = np.sqrt(stiffness * mass)
+    speed = abs(float(system.rates(state)[0]))
+    oscillation = abs(force - carrying_force) + impedance * speed
+    least_carrying_force = equilibrium.weight - mass * greatest_acceleration
+    return bool(oscillation < REST_MARGIN * least_carrying_force)
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +131,9 @@ class ContactEquilibrium:
         indentation = static_indentation(self.local.law, np.array([self.weight]))
         static, dissipative = self.local.forces_at_indentation(indentation, np.zeros(1))
         at_rest = float(dissipative[0])
-        return 1.0 + at_rest / float(static[0]) if at_rest else 1.0
+        if not at_rest:  # the static force may be zero then, as without weight
+            return 1.0
+        return 1.0 + at_rest / float(static[0])
 
     @cached_property
     def sag(self) -> float:
@@ -153,7 +156,8 @@ class ContactEquilibrium:
         sag = np.array([self.sag])
         stiffness = self.share * self.local.stiffness_at(self.sag)
         # central difference of the dissipative force, at a speed far below those of oscillations
-        rate = np.array([1e-3 * np.sqrt(self.system.gravity[0] * abs(self.sag)) + 1e-12])
+        speed = np.sqrt(self.system.gravity[0] * abs(self.sag))
+        rate = np.array([1e-3 * speed + 1e-12])
         _, approaching = self.local.forces_at_indentation(sag, rate)
         _, separating = self.local.forces_at_indentation(sag, -rate)
         damping = float((approaching - separating)[0] / (2.0 * rate[0]))
@@ -207,16 +211,18 @@ class ContactEquilibrium:
 
         It holds from a state on, for any phases of the modes.
         """
+        # the amplitudes of all modes add up at worst
         omega, mode_shapes = self.modes
         displacement, velocity = self.deviation(state)
-        amplitudes = np.hypot(mode_shapes.T @ displacement, (mode_shapes.T @ velocity) / omega)
+        modal_displacement = mode_shapes.T @ displacement
+        modal_velocity = mode_shapes.T @ velocity
+        amplitudes = np.hypot(modal_displacement, modal_velocity / omega)
         # deviation of the massless elements from the deformation under the current force
         spring_force = self.weight + self.stiffness * float(self.shape @ displacement)
         lag = state.local + self.system.local_compliance * spring_force
-        return float(
-            self.stiffness * np.abs(self.shape @ mode_shapes) @ amplitudes
-            + self.contact[0] * np.abs(lag).sum()
-        )
+        by_modes = self.stiffness * np.abs(self.shape @ mode_shapes) @ amplitudes
+        by_elements = self.contact[0] * np.abs(lag).sum()
+        return float(by_modes + by_elements)
 
     def cannot_separate(self, state: State) -> bool:
         """Whether the bound of the force excludes that the sphere separates."""
@@ -252,6 +258,7 @@ def coupled_oscillators(equilibrium: ContactEquilibrium) -> tuple[Oscillators, F
         [shapes**2 * system.damping[:, None], damping * contact_shape[None] ** 2]
     )
     total = modal_damping.sum(axis=0)
+    # d = 2 zeta omega
     coupled = Oscillators(omega, 0.5 * total / omega, contact_shape)
     damped = total > 0.0
     distribution = np.where(damped, modal_damping / np.where(damped, total, 1.0), 0.0)

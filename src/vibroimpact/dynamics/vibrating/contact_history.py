@@ -57,4 +57,6 @@ class ContactHistory:
     def force_at(self, x: Floats) -> Floats:
         """Return the contact force [N] at x in [0, 1], at least zero where the law may not pull."""
         force = self.law_force_at(x)
-        return force if self.local.law.tension == "kept" else np.maximum(force, 0.0)
+        if self.local.law.tension == "kept":
+            return force
+        return np.maximum(force, 0.0)

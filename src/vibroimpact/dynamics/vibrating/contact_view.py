@@ -35,7 +35,8 @@ class ContactModes:
         outer = system.outer_shape[rows][:, self.rigid :]
         inner = system.inner_shape[rows][:, self.rigid :]
         self.inside = bool(inner.any())
-        self.shapes = np.stack([outer, inner] if self.inside else [outer])
+        parts = [outer, inner] if self.inside else [outer]
+        self.shapes = np.stack(parts)
         self.rate = system.rate
         self.incidence = np.ascontiguousarray(system.local_incidence[rows])
         self.mobility = self.incidence * system.mobility
@@ -136,16 +137,20 @@ class ContactView:
     def start(self, state: State) -> Start:
         """Return the state of the surfaces in a state of the system."""
         modes = self.modes
-        displacement = np.ascontiguousarray(state.displacement[modes.rigid :])
-        velocity = np.ascontiguousarray(state.velocity[modes.rigid :])
-        # by the rigid motions
-        rigid_approach = self.rigid_shapes @ state.displacement[: modes.rigid]
-        rigid_rate = self.rigid_shapes @ state.velocity[: modes.rigid]
-        # and by the modes, outside and inside the contacts
-        outer_rate = rigid_rate + modes.shapes[0] @ velocity
-        inner_rate = modes.shapes[1] @ velocity if modes.inside else np.zeros_like(outer_rate)
+        rigid = slice(0, modes.rigid)
+        vibrating = slice(modes.rigid, None)
+        displacement = np.ascontiguousarray(state.displacement[vibrating])
+        velocity = np.ascontiguousarray(state.velocity[vibrating])
+        # y = y_0 + sum of chi q over rigid motions and modes + sum of r over massless elements
+        rigid_approach = self.rigid_shapes @ state.displacement[rigid]
         approach = rigid_approach + modes.shapes.sum(axis=0) @ displacement
         approach = self.offset + approach + modes.incidence @ state.local
+        # the dashpot of the law has the rate outside the contact alone
+        rigid_rate = self.rigid_shapes @ state.velocity[rigid]
+        outer_rate = rigid_rate + modes.shapes[0] @ velocity
+        inner_rate = np.zeros_like(outer_rate)
+        if modes.inside:
+            inner_rate = modes.shapes[1] @ velocity
         return Start(displacement, velocity, state.local, approach, outer_rate, inner_rate)
 
 

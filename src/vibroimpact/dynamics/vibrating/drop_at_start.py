@@ -38,6 +38,11 @@ _FIRST_ROOM = 8  # impacts of a drop; the room doubles
 def manner_of(problem: Problem, longest: float, *, waits: bool) -> ImpactManner:
     """Return what stays the same through the run of a drop; `longest`: length of a stretch [s]."""
     law = first_law_of(problem)
+    most_steps = MOST_STEPS
+    run_end = np.inf
+    if problem.duration is not None:
+        most_steps = MOST_STEPS_TO_A_TIME
+        run_end = problem.duration
     return ImpactManner(
         addresses=law_addresses(type(law)),
         series=problem.quasi_static.coefficients,
@@ -48,8 +53,8 @@ def manner_of(problem: Problem, longest: float, *, waits: bool) -> ImpactManner:
         recovers=not law.lasting,
         longest=longest,
         of_contact=longest_with_friction(problem.tolerance),
-        most_steps=MOST_STEPS if problem.duration is None else MOST_STEPS_TO_A_TIME,
-        run_end=np.inf if problem.duration is None else problem.duration,
+        most_steps=most_steps,
+        run_end=run_end,
         waits=waits,
         stops=stop_rules_of(problem),
     )
@@ -109,7 +114,9 @@ def _numbers_at_start(problem: Problem) -> Floats:
     numbers[records.GRAVITY] = problem.net_gravity
     numbers[records.GAP] = gap
     numbers[records.VELOCITY] = velocity
-    numbers[records.REST_SPEED] = np.nan if problem.rest_speed is None else problem.rest_speed
+    numbers[records.REST_SPEED] = np.nan
+    if problem.rest_speed is not None:
+        numbers[records.REST_SPEED] = problem.rest_speed
     numbers[records.REST_TIME] = np.nan
     numbers[records.END_TIME] = np.nan
     numbers[records.INERTIA] = problem.flight_inertia
@@ -175,4 +182,6 @@ def tangential_period(system: LinearSystem, state: State) -> float:
     )
     acceleration = float(np.linalg.norm(speeds * omega))
     speed = float(np.linalg.norm(speeds))
-    return 2.0 * np.pi * speed / acceleration if acceleration > 0.0 else np.inf
+    if not acceleration > 0.0:
+        return np.inf
+    return 2.0 * np.pi * speed / acceleration

@@ -65,6 +65,8 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
     below[of_rigid] = True
     below[of_plate.start :] = True  # with the driven coordinates, which come last
     elements = [problem.local_element] if problem.local_element else []
+    modes = problem.plate.modes
+    residuals = {} if modes is None else modes.residuals
     return LinearSystem(
         angular_frequency=np.concatenate(frequencies),
         damping_ratio=np.concatenate(damping_ratios),
@@ -77,7 +79,7 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
         mobility=np.array([1.0 / damping for _, damping in elements]),
         local_contact=np.zeros(len(elements), dtype=np.intp),
         along=_tangential_shapes(problem, len(shape), driven_shapes[:2]),
-        residuals={} if problem.plate.modes is None else problem.plate.modes.residuals,
+        residuals=residuals,
         driven=len(driven_frequency),
     )
 
@@ -149,9 +151,13 @@ def slices_of(problem: Problem) -> tuple[slice, slice, slice]:
     These are of the plate's rigid motions, the sphere's modes and the plate's modes. The fall of
     the sphere is the first coordinate; driven coordinates come last.
     """
-    rigid = 0 if problem.plate.rigid is None else len(problem.plate.rigid.frequencies)
-    ends = np.cumsum([1, rigid, modes_of(problem.sphere), modes_of(problem.plate)]).tolist()
-    return slice(ends[0], ends[1]), slice(ends[1], ends[2]), slice(ends[2], ends[3])
+    rigid = 0
+    if problem.plate.rigid is not None:
+        rigid = len(problem.plate.rigid.frequencies)
+    sphere = 1 + rigid
+    plate = sphere + modes_of(problem.sphere)
+    end = plate + modes_of(problem.plate)
+    return slice(1, sphere), slice(sphere, plate), slice(plate, end)
 
 
 def bases_of_plate(problem: Problem) -> list[ModalBasis]:
@@ -170,7 +176,9 @@ def centre_of(state: State, mass: Floats | float) -> tuple[Floats, Floats]:
 
 def modes_of(body: Body) -> int:
     """Return the number of modes of a body."""
-    return 0 if body.modes is None else len(body.modes.frequencies)
+    if body.modes is None:
+        return 0
+    return len(body.modes.frequencies)
 
 
 def driven_state_of(problem: Problem, mass: float, number: int) -> tuple[Floats, Floats]:

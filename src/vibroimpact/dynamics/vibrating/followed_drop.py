@@ -140,7 +140,9 @@ class FollowedDrop:
 
     def go_on(self, one_impact: bool) -> None:
         """Follow the drop in the core; `one_impact`: at most through the next impact."""
-        pause = self.impacts + 1 if one_impact else len(self.drop.rows)
+        pause = len(self.drop.rows)
+        if one_impact:
+            pause = self.impacts + 1
         self.now = follow_vibrating_drop(
             self._bases,
             contact_view(self.system, (0,)).bodies,
@@ -163,7 +165,9 @@ class FollowedDrop:
         if not problem.memory_lasts:
             return law
         law = law.changed(problem.laws[0].memories())
-        return law.after_compression(dent) if dent > 0.0 else law
+        if dent > 0.0:
+            law = law.after_compression(dent)
+        return law
 
     def _make_room(self) -> None:
         """Make room for further impacts and parts where it is used up."""
@@ -199,7 +203,8 @@ class FollowedDrop:
         progress = self.now.progress
         local = self.recorded.local(progress.law)
         holds = self._equilibria.holds(local, self.state, progress.force)
-        self.now = self.now._replace(phase=HELD if holds else IN_CONTACT)
+        phase = HELD if holds else IN_CONTACT
+        self.now = self.now._replace(phase=phase)
 
     def _fraction_done(self) -> float:
         """Return the fraction of the run that is done, in [0, 1]."""

@@ -167,7 +167,9 @@ def _shaken_columns(
     """
     surface, surface_velocity, _ = problem.surface(time)
     modes = problem.plate.modes
-    mean_shape = None if modes is None else modes.participation[:, 2] / modes.mass
+    mean_shape = None
+    if modes is not None:
+        mean_shape = modes.participation[:, 2] / modes.mass
     displacement, velocity, acceleration = motion.at(
         time, steady_phasors(motion, modes, mean_shape)
     )
@@ -189,7 +191,9 @@ def _contact_energies(
     The work is that since the last update of the law's memory.
     """
     delta = local.indentation_at(np.maximum(system.approach(state)[:, 0], local.release_level))
-    plastic = local.law.plastic_work(delta) if local.law.yields else np.zeros_like(delta)
+    plastic = np.zeros_like(delta)
+    if local.law.yields:
+        plastic = local.law.plastic_work(delta)
     return np.asarray(local.energy_at_indentation(delta)), np.asarray(plastic)
 
 

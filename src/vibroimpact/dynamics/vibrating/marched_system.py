@@ -183,8 +183,9 @@ class MarchedSystem(RecordedLaws):
         """Return a part of the motion."""
         if number not in self._motions:
             is_stretch = self.parts.kind[number] == STRETCH
-            motion = self._stretch(number) if is_stretch else self._flight(number)
-            self._motions[number] = MotionPart(float(self.parts.start[number]), motion)
+            make = self._stretch if is_stretch else self._flight
+            start = float(self.parts.start[number])
+            self._motions[number] = MotionPart(start, make(number))
         return self._motions[number]
 
     def _start(self, part: int) -> State:

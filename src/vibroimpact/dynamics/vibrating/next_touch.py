@@ -70,7 +70,9 @@ def _next_touch_in_fluid(motion: FluidMotion, level: float, until: float) -> flo
         if time + step > until or not np.isfinite(step):
             return np.inf
         if time + step == time:  # the time step is below rounding
-            return time if touch.is_closing(approach, level) else np.inf
+            if not touch.is_closing(approach, level):
+                return np.inf
+            return time
         time += step
     return time
 
@@ -93,7 +95,8 @@ def _time_to_separation_in_fluid(motion: FluidMotion, level: float) -> float:
             return np.inf
         times = time + horizon * _SAMPLES
         separated = motion.motion(times)[0][:, 0] <= level
-        next_time = float(times[separated.argmax() if separated.any() else -1])
+        first = separated.argmax() if separated.any() else -1
+        next_time = float(times[first])
         if next_time == time:  # the time step is below rounding
             return time
         time = next_time

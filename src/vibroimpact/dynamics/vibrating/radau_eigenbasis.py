@@ -40,6 +40,9 @@ def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
     rule = collocation_rule(NODES_PER_STRETCH, time_map, root)
     eigenvalues, forward, backward, filters = _eigenbasis(rule.integral)
     inverse = forward[:, 0] + 1j * forward[:, 1]
+    at_end = rule.end_slope
+    if time_map == "release":  # where the slope by the time is infinite
+        at_end = np.zeros(NODES_PER_STRETCH)
     nodes = np.append(0.0, rule.nodes)
     between_nodes = _between(nodes)
     basis = Basis(
@@ -48,7 +51,7 @@ def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
         integral_twice=rule.integral_twice,
         spectrum=rule.coefficients * rule.slope,
         at_start=rule.weights_at_start[:, 0],
-        at_end=np.zeros(NODES_PER_STRETCH) if time_map == "release" else rule.end_slope,
+        at_end=at_end,
         places=nodes,
         barycentric=rule.barycentric,
         grid=rule.weights(GRID).T,
@@ -63,10 +66,16 @@ def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
         backward=backward.reshape(NODES_PER_STRETCH, -1).T,
         filters=filters,
     )
-    contiguous: Any = (
-        np.ascontiguousarray(member) if np.ndim(member) else member for member in basis
-    )
-    return RadauEigenbasis(rule, Basis(*contiguous))
+    return RadauEigenbasis(rule, _contiguous(basis))
+
+
+def _contiguous(basis: Basis) -> Basis:
+    """Return a basis whose arrays are contiguous, as compiled code takes them."""
+    members: dict[str, Any] = {}
+    for name, member in basis._asdict().items():
+        if np.ndim(member):
+            members[name] = np.ascontiguousarray(member)
+    return basis._replace(**members)
 
 
 def _eigenbasis(integral: Floats) -> tuple[Complex, Floats, Floats, Floats]:
@@ -83,22 +92,30 @@ def _eigenbasis(integral: Floats) -> tuple[Complex, Floats, Floats, Floats]:
     filters : array, shape (2 H, N^2)
         Real parts and minus imaginary parts of the projections on the eigenvectors.
     """
-    eigenvalues, eigenvectors = np.linalg.eig(integral)
-    half = np.flatnonzero(eigenvalues.imag >= 0.0)
-    eigenvalues = eigenvalues[half].astype(np.complex128)
+    nodes = len(integral)
+    all_eigenvalues, all_eigenvectors = np.linalg.eig(integral)
+    half = np.flatnonzero(all_eigenvalues.imag >= 0.0)
+    number = len(half)
+    eigenvalues = all_eigenvalues[half].astype(np.complex128)
     paired = eigenvalues.imag > 0.0
-    # the sum of a conjugate pair is twice the real part of one
-    eigenvectors = np.where(paired, 2.0, 1.0) * eigenvectors[:, half]
+
+    # v = sum of c_k u_k; the sum of a conjugate pair is twice the real part of one,
+    # 2 (Re u Re c - Im u Im c)
+    multiplicity = np.where(paired, 2.0, 1.0)
+    eigenvectors = multiplicity * all_eigenvectors[:, half]
     backward = np.stack([eigenvectors.real, -eigenvectors.imag], axis=2)
-    # a real eigenvalue has no imaginary part
-    present = np.stack([np.ones_like(paired), paired], axis=1)
-    forward = np.zeros((len(half), 2, len(integral)))
-    # inverse of the real matrix, so that a round trip is exact to rounding
-    forward[present] = np.linalg.inv(backward[:, present])
+
+    # inverse of the real matrix, so that a round trip is exact to rounding; the coordinate of a
+    # real eigenvalue has no imaginary part
+    has_part = np.stack([np.ones_like(paired), paired], axis=1)
+    forward = np.zeros((number, 2, nodes))
+    forward[has_part] = np.linalg.inv(backward[:, has_part])
+
+    # an operator f(Q) is the sum of f(lambda_k) times the projections u_k w_k^T
     inverse = forward[:, 0] + 1j * forward[:, 1]
-    projections = (eigenvectors.T[:, :, None] * inverse[:, None, :]).reshape(len(half), -1)
+    projections = eigenvectors.T[:, :, None] * inverse[:, None, :]
     filters = np.stack([projections.real, -projections.imag], axis=1)
-    return eigenvalues, forward, backward, filters.reshape(2 * len(half), -1)
+    return eigenvalues, forward, backward, filters.reshape(2 * number, nodes * nodes)
 
 
 def _between(nodes: Floats) -> Floats:

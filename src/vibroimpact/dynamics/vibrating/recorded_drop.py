@@ -71,13 +71,14 @@ class RecordedDrop(MadeBounces[VibratingBounce]):
         if number == len(self.rows):
             end = np.array([self._end_of_flight(number)])
             return VibratingBounce(flight, end, motion=motion, oblique=oblique)
+        along = self.sliding[number] if self.sliding else None
         return VibratingBounce(
             flight=flight,
             flight_end=self.rows[number, [records.TOUCH]],
             contact=self._contact(number),
             motion=motion,
             oblique=oblique,
-            along=self.sliding[number] if self.sliding else None,
+            along=along,
         )
 
     def _part_of_flight(self, number: int) -> int:

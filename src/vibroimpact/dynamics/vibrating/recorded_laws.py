@@ -47,7 +47,11 @@ class RecordedLaws(ABC):
         compressed = float(written.compressed[law])
         if not np.isnan(compressed):
             return self.local(origin).after_indentation(compressed)
-        acting = self._stated_law(law) if origin == OF_IMPACT else self.local(origin).law
+        if origin == OF_IMPACT:
+            acting = self._stated_law(law)
+        else:  # that has gone on from another one
+            local = self.local(origin)
+            acting = local.law
         return LocalContact(acting, self._series(law), float(written.closing_speed[law]))
 
     def _history(self, row: int, contact: int, rule: Rule) -> ContactHistory:

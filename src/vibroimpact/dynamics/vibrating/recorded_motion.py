@@ -125,7 +125,8 @@ class RecordedMotion(RecordedLaws):
         """Return the motion of a part of an impact."""
         if part not in self._motions:
             is_stretch = self.parts.kind[part] == STRETCH
-            self._motions[part] = self._stretch(part) if is_stretch else self._free(part)
+            make = self._stretch if is_stretch else self._free
+            self._motions[part] = make(part)
         return self._motions[part]
 
     def view(self, part: int) -> ContactView:
@@ -220,6 +221,7 @@ def room_for_parts(system: LinearSystem, coefficients: int) -> Parts:
     number = system.number
     elements = len(system.rate)
     directions = 0 if system.along is None else len(system.along)
+    sphere_numbers = NUMBERS if directions else 0
     nodes = NODES_PER_STRETCH
     return Parts(
         written=np.zeros(2, dtype=np.int64),
@@ -244,7 +246,7 @@ def room_for_parts(system: LinearSystem, coefficients: int) -> Parts:
         indentation=np.empty((most, nodes + 1)),
         friction=np.empty((most, directions, nodes)),
         slip=np.empty((most, directions, nodes)),
-        sphere=np.empty((most, 2, NUMBERS if directions else 0)),
+        sphere=np.empty((most, 2, sphere_numbers)),
         origin=np.zeros(laws, dtype=np.int64),
         closing_speed=np.empty(laws),
         compressed=np.empty(laws),

@@ -44,7 +44,9 @@ class VibratingSegment:
     @property
     def trajectory(self) -> VibratingStretch | FreeMotion | RestMotion:
         """The motion that gives states at times since the start of the segment."""
-        return self.motion.free if isinstance(self.motion, FreePhase) else self.motion
+        if isinstance(self.motion, FreePhase):
+            return self.motion.free
+        return self.motion
 
     @property
     def system(self) -> LinearSystem:
@@ -141,7 +143,9 @@ def vibrating_timeline(
         touch = float(bounce.flight_end[0])
         start = float(bounce.flight.start[0])
         append(start, touch, bounce.motion)
-        for piece in bounce.contact.pieces if bounce.contact is not None else ():
+        if bounce.contact is None:  # the run has ended in this flight
+            continue
+        for piece in bounce.contact.pieces:
             begin = touch + piece.start
             assert isinstance(piece.motion, (VibratingStretch, FreePhase))
             append(begin, begin + piece.motion.length, piece.motion)

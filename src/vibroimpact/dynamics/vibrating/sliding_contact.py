@@ -86,7 +86,10 @@ class SlidingContact:
     def end(self) -> tuple[State, Floats, Floats]:
         """The state at the end, and the energies that friction and microslip took [J] (1,)."""
         state, _, work = self.at(self.duration)
-        microslip = self.stretches[-1][1].end.microslip if self.stretches else 0.0
+        microslip = 0.0
+        if self.stretches:
+            _, last_stretch = self.stretches[-1]
+            microslip = last_stretch.end.microslip
         return state, work, np.array([microslip])
 
 

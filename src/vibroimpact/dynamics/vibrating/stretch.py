@@ -130,19 +130,17 @@ class VibratingStretch:
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (T,)."""
         start = self.start
-        h = self.length
         load = self.system.load
         t = np.asarray(time)[:, None]
         # gravity is integrated in closed form, the other accelerations by the rule
         forced = self.accelerations - load
-        to_time = h * self.rule.integral_to(self._x(time))
-        forced_velocity = h * (self.rule.integral @ forced)
+        to_time = self.length * self.rule.integral_to(self._x(time))
+        forced_velocity = self.length * (self.rule.integral @ forced)
         fall = t * (start.velocity + 0.5 * t * load)
-        return State(
-            start.displacement + fall + to_time @ forced_velocity,
-            start.velocity + t * load + to_time @ forced,
-            start.local + to_time @ self.motion.massless.T,
-        )
+        displacement = start.displacement + fall + to_time @ forced_velocity
+        velocity = start.velocity + t * load + to_time @ forced
+        local = start.local + to_time @ self.motion.massless.T
+        return State(displacement, velocity, local)
 
     @cached_property
     def powers(self) -> Floats:

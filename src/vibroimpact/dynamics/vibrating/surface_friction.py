@@ -144,21 +144,26 @@ class SlidingStretch:
         Velocity and displacement are (2, T), friction is (2 or 5, T), and energy (T,).
         """
         rule = self.rule
-        start = self.start
         x = rule.unmap_time(time / self.length)
         to_time = self.length * rule.integral_to(x)
+
+        # gravity in closed form, friction by the rule: u'' = g - Q/m_t
         pull = self.sphere.pull[:, None]
-        # deceleration of the contact point by friction, at the nodes
+        start_velocity = self.start.velocity[:, None]
+        start_displacement = self.start.displacement[:, None]
         deceleration = slowing(self.sphere, np.ascontiguousarray(self.force)).T
-        velocity = start.velocity[:, None] + pull * time - (to_time @ deceleration).T
-        free = start.displacement[:, None] + (start.velocity[:, None] + 0.5 * pull * time) * time
         velocity_lost = self.length * (rule.integral @ deceleration)
+        velocity = start_velocity + pull * time - (to_time @ deceleration).T
+        free = start_displacement + (start_velocity + 0.5 * pull * time) * time
         displacement = free - (to_time @ velocity_lost).T
+
         # the moments at the start are about those at the first node
-        force_at_start = np.append(start.force, self.force[2:, 0])
-        force = np.concatenate([force_at_start[:, None], self.force], axis=1) @ rule.weights(x)
+        force_at_start = np.append(self.start.force, self.force[2:, 0])
+        forces = np.concatenate([force_at_start[:, None], self.force], axis=1)
+        force = forces @ rule.weights(x)
         power = (self.force * self.slip).sum(axis=0)
-        return velocity, displacement, force, start.work + to_time @ power
+        work = self.start.work + to_time @ power
+        return velocity, displacement, force, work
 
     def turned(self, time: Floats) -> tuple[Floats, Floats]:
         """Return the change of spin and of displacement by moments at times since the start [s].

@@ -76,7 +76,9 @@ class Converter:
     @property
     def step(self) -> float:
         """The step of its readings, in the unit of its range; zero if it does not round."""
-        return 0.0 if self.bits is None else math.ldexp(self.range, 1 - self.bits)
+        if self.bits is None:
+            return 0.0
+        return math.ldexp(self.range, 1 - self.bits)
 
     def read(self, value: Floats) -> Floats:
         """Return the readings of samples.
@@ -84,8 +86,9 @@ class Converter:
         The upper end of the range is a step below the lower one's magnitude, as of any two's
         complement.
         """
-        rounded = self.step * np.round(value / self.step) if self.step else value
-        return np.clip(rounded, -self.range, self.range - self.step)
+        if self.step:
+            value = self.step * np.round(value / self.step)
+        return np.clip(value, -self.range, self.range - self.step)
 
 
 def amplified(amplifier: Amplifier, name: str, value: Floats, rate: float, passed: float) -> Floats:

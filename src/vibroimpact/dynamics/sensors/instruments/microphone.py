@@ -63,7 +63,9 @@ class Microphone:
 
         It is in V s^2/m^2 or kg/m^3.
         """
-        return self.air_density * (1.0 if self.sensitivity is None else self.sensitivity)
+        if self.sensitivity is None:
+            return self.air_density
+        return self.air_density * self.sensitivity
 
     @property
     def sections(self) -> tuple[Section, ...]:

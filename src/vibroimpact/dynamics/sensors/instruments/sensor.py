@@ -126,12 +126,16 @@ class Sensor:
     @property
     def order(self) -> int:
         """Order of the derivative of the displacement that it takes."""
-        return MOTIONS[self.quantity] if self.instrument is None else self.instrument.order
+        if self.instrument is None:
+            return MOTIONS[self.quantity]
+        return self.instrument.order
 
     @property
     def sections(self) -> tuple[Section, ...]:
         """The pairs of poles of the instrument."""
-        return () if self.instrument is None else self.instrument.sections
+        if self.instrument is None:
+            return ()
+        return self.instrument.sections
 
     @property
     def components(self) -> Direction:
@@ -143,12 +147,16 @@ class Sensor:
     @property
     def subject(self) -> Subject:
         """What it is sensitive to."""
-        return "motion" if self.instrument is None else self.instrument.subject
+        if self.instrument is None:
+            return "motion"
+        return self.instrument.subject
 
     @property
     def steepness(self) -> float:
         """Power of the frequency by which what it sees grows in modes of the same deflection."""
-        return 0.0 if self.instrument is None else self.instrument.steepness
+        if self.instrument is None:
+            return 0.0
+        return self.instrument.steepness
 
     @property
     def passed(self) -> float:
