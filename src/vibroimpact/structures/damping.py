@@ -37,7 +37,9 @@ class ConstantRatio:
     @property
     def description(self) -> str:
         """Short description for users."""
-        return f"damping ratio {self.ratio:g} of every mode" if self.ratio else "none"
+        if not self.ratio:
+            return "none"
+        return f"damping ratio {self.ratio:g} of every mode"
 
     def ratios(self, frequencies: Floats) -> Floats:
         """Return the damping ratio of each mode."""

@@ -177,7 +177,9 @@ class _Krylov:
         # what the newest block, which is not yet in the projection, adds to each response
         residuals = np.linalg.norm(self._last @ coefficients[size - self._last.shape[1] :], axis=0)
         unconverged = (residuals > tolerance * np.abs(responses))[::-1]
-        return int(unconverged.argmax()) if unconverged.any() else int(size)
+        if not unconverged.any():
+            return int(size)
+        return int(unconverged.argmax())
 
     def _orthogonalised(self, block: Floats) -> tuple[Floats, Floats]:
         """Return a block orthogonalised against the space and the known modes.

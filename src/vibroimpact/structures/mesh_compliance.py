@@ -158,16 +158,20 @@ class _SmallPlate:
 
     def exact_compliance(self, position: tuple[float, float]) -> float:
         """Return the compliance of plate theory at a position from the centre [m/N]."""
+        # Navier's double series: 4/(a b) sum of w c sin^2(m pi x/a) sin^2(n pi y/b)
         wave_numbers = []
         squared_sines = []
         for side, coordinate in zip(self.size, position, strict=True):
             terms = math.ceil(_END * self._split * side / math.pi)
-            k = np.arange(1, terms + 1) * math.pi / side
-            wave_numbers.append(k)
-            squared_sines.append(np.sin(k * (coordinate + 0.5 * side)) ** 2)
+            k_along = np.arange(1, terms + 1) * math.pi / side
+            from_edge = coordinate + 0.5 * side
+            wave_numbers.append(k_along)
+            squared_sines.append(np.sin(k_along * from_edge) ** 2)
         k = np.hypot(wave_numbers[0][:, None], wave_numbers[1])
-        series = squared_sines[0] @ (self._weight(k) * self._spectrum(k)) @ squared_sines[1]
-        return 4.0 / math.prod(self.size) * float(series) + self._near
+        coefficients = self._weight(k) * self._spectrum(k)
+        series = squared_sines[0] @ coefficients @ squared_sines[1]
+        area = math.prod(self.size)
+        return 4.0 / area * float(series) + self._near
 
     @cached_property
     def _near(self) -> float:
@@ -193,6 +197,7 @@ class _SmallPlate:
 
     def _spectrum(self, k: Floats) -> Floats:
         """Return c at wave numbers [1/m]."""
+        # Mindlin: 1/(D k^4) + 1/(kappa G h k^2), the latter zero for the thin plate
         modulus = self.material.youngs_modulus
         ratio = self.material.poissons_ratio
         rigidity = modulus * self.thickness**3 / (12.0 * (1.0 - ratio**2))

@@ -29,7 +29,9 @@ _NONE = 1e-8  # of the norm of a rigid motion: below, its component in a part is
 
 def elastic_system(held: HeldStructure) -> ElasticSystem | MirroredSystem:
     """Return the elastic system of a held structure, divided by parity if it has mirror planes."""
-    mirrors = mirror_planes(held) if len(held.free) > _FEW else []
+    mirrors = []
+    if len(held.free) > _FEW:
+        mirrors = mirror_planes(held)
     if mirrors:
         return MirroredSystem(held, mirrors)
     return ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
@@ -118,12 +120,14 @@ class MirroredSystem:
         """Return the lowest modes of all parts, on the degrees of freedom of the whole."""
         frequencies = np.concatenate([part.angular_frequencies for part in parts])
         lowest = np.argsort(frequencies, kind="stable")[:number]
-        shapes = np.empty((self.stiffness.shape[0], len(lowest)))
+        dofs = self.stiffness.shape[0]
+        shapes = np.empty((dofs, len(lowest)))
         first = 0  # number of the first mode of a part among those of all parts
         for basis, part in zip(self.bases, parts, strict=True):
             end = first + len(part.angular_frequencies)
-            columns = np.flatnonzero((lowest >= first) & (lowest < end))
-            shapes[:, columns] = basis @ part.shapes[:, lowest[columns] - first]
+            is_of_part = (lowest >= first) & (lowest < end)
+            number_in_part = lowest[is_of_part] - first
+            shapes[:, is_of_part] = basis @ part.shapes[:, number_in_part]
             first = end
         return Eigenmodes(frequencies[lowest], shapes)
 

@@ -92,12 +92,14 @@ def _modes_of_plate(recipe: Recipe, size: tuple[float, float, float], omega: flo
     conditions = {
         support.edge: support.condition for support in recipe.supports if isinstance(support, Edge)
     }
-    edge_sum = sum(
-        OF_AN_EDGE[conditions.get(edge, "free")] * (width if edge[0] == "x" else length)
-        for edge in EDGES
-    )
+    of_edges = []
+    for edge in EDGES:
+        side = width if edge[0] == "x" else length
+        of_edges.append(OF_AN_EDGE[conditions.get(edge, "free")] * side)
+    edge_sum = sum(of_edges)
     area = length * width
-    # k_P^2 = (1 - nu) / 2 k_T^2 of longitudinal waves in the plane
+    # Weyl's count of waves in the plane: area k^2/4 pi of bending, shear and longitudinal waves,
+    # of which k_P^2 = (1 - nu)/2 k_T^2, and edges times k/4 pi of bending
     squares = bending**2 + shear**2 * (1.0 + 0.5 * (1.0 - ratio))
     waves = area * squares + edge_sum * bending
     return max(0.0, waves / (4.0 * math.pi) + area * thickness * _modes_per_volume(recipe, omega))

@@ -87,10 +87,12 @@ class ElasticSystem:
         order: Integers | None = None,
     ) -> None:
         size = stiffness.shape[0]
+        if rigid is None:
+            rigid = np.zeros((size, 0))
         self.stiffness = stiffness
         self.mass = mass
         self.order = np.arange(size) if order is None else order
-        self.rigid = of_unit_mass(np.zeros((size, 0)) if rigid is None else rigid, mass)
+        self.rigid = of_unit_mass(rigid, mass)
         """Rigid motions of unit modal mass."""
         self._momentum = mass @ self.rigid
         constrained = _constrained_dofs(self.rigid)
@@ -98,7 +100,9 @@ class ElasticSystem:
         free_number = np.full(size, -1)
         free_number[self._free] = np.arange(len(self._free))
         free_order = free_number[self.order]
-        matrix = stiffness[self._free][:, self._free] if len(constrained) else stiffness
+        matrix = stiffness
+        if len(constrained):
+            matrix = stiffness[self._free][:, self._free]
         self._factors = Factors(csr_array(matrix), free_order[free_order >= 0])
         self._heavy = mass.diagonal() > 0.0  # the slopes of a thin plate have no inertia
         self._refuse_mechanisms()
@@ -114,6 +118,7 @@ class ElasticSystem:
         In a free system the load is balanced by the inertia of the rigid acceleration (inertia
         relief), and the response has no rigid component.
         """
+        # f - M R R^T f: the inertia of the rigid acceleration R R^T f is taken away
         balanced = load - self._momentum @ (self.rigid.T @ load)
         response = np.zeros_like(balanced)
         response[self._free] = self._factors.solve(balanced[self._free])
@@ -241,4 +246,6 @@ def max_modes(mass: csr_array, rigid: int) -> int:
     `rigid` is its number of rigid motions.
     """
     most = int(np.count_nonzero(mass.diagonal() > 0.0)) - rigid
-    return most if mass.shape[0] <= _DENSE else int(_MOST * most)
+    if mass.shape[0] <= _DENSE:
+        return most
+    return int(_MOST * most)

@@ -226,7 +226,9 @@ def _mindlin(wave: Floats, ratio: float, factor: float | None = None) -> tuple[F
     The deflection is that for unit modal mass per area. Units are such that h = rho = G = 1, so
     that `wave` is k h; `factor` is the shear correction, by default `shear_factor`.
     """
-    shear_stiffness = shear_factor(ratio) if factor is None else factor  # kappa G h
+    if factor is None:
+        factor = shear_factor(ratio)
+    shear_stiffness = factor  # kappa G h
     bending_stiffness = wave**2 / (6.0 * (1.0 - ratio))  # D k^2
     # omega^2 is the smaller root of x^2 - trace x + product, in a form without cancellation
     trace = shear_stiffness * wave**2 + 12.0 * (bending_stiffness + shear_stiffness)
@@ -255,10 +257,13 @@ def _lamb(wave: Floats, ratio: float) -> tuple[Floats, Floats]:
 
     # amplitude of the shear part over that of the pressure part, without shear stress on the faces
     shear_part = 2.0 * k * alpha / (k**2 + beta**2)
-    pressure_along = k * np.sinh(alpha * z) / np.cosh(0.5 * alpha)
-    shear_along = shear_part * beta * np.sinh(beta * z) / np.cosh(0.5 * beta)
-    pressure_across = alpha * np.cosh(alpha * z) / np.cosh(0.5 * alpha)
-    shear_across = shear_part * k * np.cosh(beta * z) / np.cosh(0.5 * beta)
+    # over their values at the face, as the hyperbolic functions of short waves are large there
+    pressure_at_face = np.cosh(0.5 * alpha)
+    shear_at_face = np.cosh(0.5 * beta)
+    pressure_along = k * np.sinh(alpha * z) / pressure_at_face
+    shear_along = shear_part * beta * np.sinh(beta * z) / shear_at_face
+    pressure_across = alpha * np.cosh(alpha * z) / pressure_at_face
+    shear_across = shear_part * k * np.cosh(beta * z) / shear_at_face
     along = pressure_along - shear_along
     across = pressure_across - shear_across
     face = (alpha - shear_part * k)[..., 0]

@@ -130,7 +130,8 @@ class SphereOfSolids(Shape):
         across = max(4, 4 * int(_COARSE_ACROSS * self.elements_across / 4))
         if across >= self.elements_across:
             return None
-        power = 4.0 if ELEMENT_KINDS[self.kind].order == 2 else 2.0
+        order = ELEMENT_KINDS[self.kind].order
+        power = 4.0 if order == 2 else 2.0
         return replace(self, elements_across=across), (self.elements_across / across) ** power
 
 
@@ -183,7 +184,9 @@ class PlateOfSolids(Shape):
     @property
     def _splits_below(self) -> int:
         """Number of splits of the lowest layer, by default that of rims."""
-        return self.splits if self.lower_splits is None else self.lower_splits
+        if self.lower_splits is None:
+            return self.splits
+        return self.lower_splits
 
 
 @dataclass(frozen=True)
@@ -514,7 +517,8 @@ def _nearest_dofs(held: HeldStructure, place: Place) -> Integers:
     mesh = structure.mesh
     _, position = _motion_at(structure, place)
     # nodes of plate elements lie in the middle plane
-    height = 0.5 * structure.thickness if place[1] == "upper" else -0.5 * structure.thickness
+    sign = 1.0 if place[1] == "upper" else -1.0
+    height = sign * 0.5 * structure.thickness
     distance = np.linalg.norm(mesh.nodes - position + [0.0, 0.0, height], axis=1)
     dofs = mesh.dofs_per_node * distance.argmin() + np.arange(mesh.dofs_per_node)
     return np.unique(held.expansion[dofs].indices)

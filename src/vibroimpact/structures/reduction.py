@@ -67,6 +67,8 @@ def craig_bampton(
     [0.333333, 0.666667, 1.0]
     """
     size = stiffness.shape[0]
+    if order is None:
+        order = np.arange(size)
     boundary = np.unique(np.asarray(interface, dtype=np.int64))
     if not len(boundary):
         raise InputError(
@@ -75,14 +77,18 @@ def craig_bampton(
     inside = np.setdiff1d(np.arange(size), boundary)
     number_inside = np.full(size, -1)
     number_inside[inside] = np.arange(len(inside))
-    inside_order = number_inside[np.arange(size) if order is None else order]
+    inside_order = number_inside[order]
     permitted = _rigid_with_fixed(rigid, boundary)
+    if permitted is not None:
+        permitted = permitted[inside]
     interior = ElasticSystem(
         stiffness[inside][:, inside],
         mass[inside][:, inside],
-        None if permitted is None else permitted[inside],
+        permitted,
         inside_order[inside_order >= 0],
     )
+    # constraint modes, of unit displacements of the interface: -K_ii^-1 K_ib; then fixed-interface
+    # normal modes
     basis = np.zeros((size, len(boundary) + number))
     basis[boundary, np.arange(len(boundary))] = 1.0
     coupling = stiffness[inside][:, boundary].toarray()
@@ -111,6 +117,7 @@ def attachment_modes(
     R. H. MacNeal, Comput. Struct. 1:581, 1971; for a free system the response is that with inertia
     relief.
     """
+    # of each mode under a static load: phi^T f/omega^2
     amplitudes = (modes.shapes.T @ loads) / modes.angular_frequencies[:, None] ** 2
     return np.asarray(elastic.static(loads) - modes.shapes @ amplitudes)
 
@@ -145,16 +152,24 @@ def projected(
 
     initial_norms = _norms(basis, mass)
     if rigid is not None and rigid.shape[1]:
-        basis = basis - rigid @ (rigid.T @ (mass @ basis))
+        rigid_part = rigid @ (rigid.T @ (mass @ basis))
+        basis = basis - rigid_part
     norms = _norms(basis, mass)
     is_elastic = norms > _RIGID * initial_norms  # without columns that are rigid motions
     basis = basis[:, is_elastic] / norms[is_elastic]
+
     # an orthonormal basis, without dependent columns
     gram_values, directions = eigh(basis.T @ (mass @ basis))
     independent = gram_values > _DEPENDENT * gram_values[-1]
-    basis = basis @ (directions[:, independent] / np.sqrt(gram_values[independent]))
-    squares, coefficients = eigh(basis.T @ (stiffness @ basis), basis.T @ (mass @ basis))
-    return Eigenmodes(np.sqrt(np.maximum(squares, 0.0)), basis @ coefficients)
+    scales = np.sqrt(gram_values[independent])
+    basis = basis @ (directions[:, independent] / scales)
+
+    # Rayleigh and Ritz: K_r c = omega^2 M_r c
+    reduced_stiffness = basis.T @ (stiffness @ basis)
+    reduced_mass = basis.T @ (mass @ basis)
+    squares, coefficients = eigh(reduced_stiffness, reduced_mass)
+    frequencies = np.sqrt(np.maximum(squares, 0.0))  # of rounding errors none
+    return Eigenmodes(frequencies, basis @ coefficients)
 
 
 def _norms(basis: Floats, mass: csr_array) -> Floats:

@@ -169,22 +169,28 @@ def _integral_over_faces(
     local, weights = _rule(len(faces.corners), cells)
     values, slopes = faces.shape_functions(local)  # (q, k), (q, 2, k)
     nodes = mesh.nodes[faces.connectivity]  # (f, k, 3)
-    # outward normals times the area of the quadrature points
+
+    # dS n = dx/da x dx/db da db, turned outwards
     tangents = np.einsum("qak,fki->fqai", slopes, nodes)
-    area = np.cross(tangents[..., 0, :], tangents[..., 1, :]) * weights[:, None]
+    normals = np.cross(tangents[..., 0, :], tangents[..., 1, :])
+    area = normals * weights[:, None]
     area *= _outwards(listener) * np.sign(area[..., 2:])
+
+    # Rayleigh's integral: p/rho = sum of a_n dS/(2 pi R), delayed by R/c
     positions = np.einsum("qk,fki->fqi", values, nodes)
     distance = np.linalg.norm(positions - point, axis=2)
-    factors = area / (2.0 * np.pi * distance[..., None])  # dS / 2 pi R, (f, q, 3)
+    factors = area / (2.0 * np.pi * distance[..., None])  # (f, q, 3)
 
     # the pressure of each quadrature point arrives between two steps of the grid of delays
     travel_steps = distance / (listener.speed * listener.step)
     delays, shares = lagrange_shares(travel_steps.ravel())
     first = int(delays.min())
-    quadrature_points = np.arange(delays.size) // delays.shape[1]
+    shares_per_point = delays.shape[1]
+    quadrature_points = np.arange(delays.size) // shares_per_point
     coordinates = ((delays - first).ravel(), quadrature_points)
     arrival = csr_array(coo_array((shares.ravel(), coordinates)))
-    return first, csr_array(arrival @ _pressures(mesh, faces, factors, values))
+    pressures = _pressures(mesh, faces, factors, values)
+    return first, csr_array(arrival @ pressures)
 
 
 def _pressures(mesh: Mesh, faces: Faces, factors: Floats, values: Floats) -> csr_array:

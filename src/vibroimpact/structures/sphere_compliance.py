@@ -158,7 +158,8 @@ def _loads(ratio: float) -> tuple[Floats, Floats]:
     dP_n / d theta.
     """
     nodes, weights = _gauss()
-    # r = a sin(angle) removes the square root of Hertz's pressure
+    # r = a sin(angle) removes the root of Hertz's pressure, p = 3/(2 pi a^2) sqrt(1 - r^2/a^2):
+    # 2 pi p r dr = 3 cos^2(angle) sin(angle) d angle, from 0 to pi/2
     angle = 0.25 * np.pi * (nodes + 1.0)
     force = 0.25 * np.pi * weights * 3.0 * np.cos(angle) ** 2 * np.sin(angle)
     # of the polar angle theta on the sphere
@@ -171,12 +172,16 @@ def _loads(ratio: float) -> tuple[Floats, Floats]:
     differences = np.zeros((degrees, len(nodes)))  # P_n - P_(n-1)
     # Bonnet's recursion for differences, as successive values nearly cancel near the pole
     for n in range(1, degrees):
-        differences[n] = (
-            (n - 1) * differences[n - 1] - (2 * n - 1) * one_less_cosine * legendre[n - 1]
-        ) / n
+        of_last_difference = (n - 1) * differences[n - 1]
+        of_last_value = (2 * n - 1) * one_less_cosine * legendre[n - 1]
+        differences[n] = (of_last_difference - of_last_value) / n
         legendre[n] = legendre[n - 1] + differences[n]
-    slopes = np.arange(degrees)[:, None] * (differences - one_less_cosine * legendre) / sine
-    return -legendre @ (force * cosine), slopes @ (force * sine)
+    # sin(theta) dP_n/d theta = n (cos(theta) P_n - P_(n-1))
+    n_column = np.arange(degrees)[:, None]
+    slopes = n_column * (differences - one_less_cosine * legendre) / sine
+    radial = -legendre @ (force * cosine)
+    meridional = slopes @ (force * sine)
+    return radial, meridional
 
 
 @functools.cache
@@ -200,12 +205,8 @@ def _displacements(
     # tractions over twice the shear modulus; (2 n + 1) / 4 pi, and n (n + 1) for the meridional
     # ones, are the norms of the harmonics
     normal = (2.0 * degree + 1.0) * (1.0 + nu) / (4.0 * np.pi) * radial_loads
-    shear = (
-        (2.0 * degree + 1.0)
-        * (1.0 + nu)
-        / (4.0 * np.pi * np.maximum(degree * (degree + 1.0), 1.0))
-        * meridional_loads
-    )
+    meridional_norm = np.maximum(degree * (degree + 1.0), 1.0)
+    shear = (2.0 * degree + 1.0) * (1.0 + nu) / (4.0 * np.pi * meridional_norm) * meridional_loads
     meridional_1, radial_1 = _first_degree(nu, normal[1], shear[1])
     expansion = normal[0] * (1.0 - 2.0 * nu) / (1.0 + nu)
 

@@ -221,7 +221,11 @@ def averaged_compliances(
         If a place is not on the body.
     """
     upper, lower = _face_rows(held, places, averages)
-    load, opposite = (upper, lower) if side == "upper" else (lower, upper)
+    load = upper
+    opposite = lower
+    if side == "lower":
+        load = lower
+        opposite = upper
     displacements = elastic.static(load.toarray().T)
     return np.asarray(opposite.multiply(displacements.T).sum(axis=1))
 

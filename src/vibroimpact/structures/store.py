@@ -68,7 +68,9 @@ def store_folder() -> Path:
     from platformdirs import user_cache_path
 
     folder = os.environ.get(PLACE)
-    return Path(folder) if folder else user_cache_path("vibroimpact") / "modes"
+    if folder:
+        return Path(folder)
+    return user_cache_path("vibroimpact") / "modes"
 
 
 def key_of(recipe: Any) -> str:

@@ -145,7 +145,9 @@ def computed_transfers(
     ratio = recipe.poissons_ratio
     has_plate_elements = isinstance(recipe.shape, PlateOfPlates)
     thin = is_thin(recipe)
-    square = faces * _square(ratio) if has_plate_elements else 0.0
+    square = 0.0
+    if has_plate_elements:
+        square = faces * _square(ratio)
 
     def distribution(place: tuple[float, float], thickness: float) -> Average:
         if thin:
@@ -156,8 +158,8 @@ def computed_transfers(
         recipe, places, side, distribution
     )
     compliances = np.empty((len(places), len(points), 3))
+    element_thickness = structure.thickness if has_plate_elements else 0.0
     for number, (point, face) in enumerate(points):
-        element_thickness = structure.thickness if has_plate_elements else 0.0
         motion, _ = surface_motion(
             structure.mesh, np.array([point]), face, element_thickness, "a sensor"
         )
@@ -183,8 +185,10 @@ def _disc_of_an_element(shape: Shape, place: tuple[float, float]) -> float:
     It is zero where the disc would extend beyond the plate.
     """
     assert isinstance(shape, PlateOfPlates)
-    room = min(0.5 * side - abs(at) for side, at in zip(shape.size[:2], place, strict=True))
-    return shape.element_size if room > shape.element_size else 0.0
+    to_edges = [0.5 * side - abs(at) for side, at in zip(shape.size[:2], place, strict=True)]
+    if min(to_edges) > shape.element_size:
+        return shape.element_size
+    return 0.0
 
 
 def thin_near_term(distance: float, radius: float, rigidity: float) -> float:
@@ -269,7 +273,9 @@ def near_term(
     k = y / thickness
     # kernel of the layer over that of the half space, on the loaded face without the latter
     bending, squeezing = layer_kernels(y)
-    layer = bending + squeezing - 1.0 if same_face else bending - squeezing
+    layer = bending - squeezing
+    if same_face:
+        layer = bending + squeezing - 1.0
     square = _square(poissons_ratio)
     average = Average(_RADIUS * thickness, 3.0 - 6.0 * faces * square / _RADIUS**2)
     # excess of the modes of plate theory in long waves
@@ -277,6 +283,7 @@ def near_term(
     bending_term = 1.0 / (rigidity * k**4)
     shear_term = (1.0 / shear_stiffness - excess) / k**2
     plate = (bending_term + shear_term) * average.transform(k)
+    # inverse Hankel transform: the integral of kernel J_0(k r) k dk/2 pi
     kernel = (2.0 / (modulus * k) * layer - plate) * jv(0, k * distance)
     displacement = float(kernel @ (k * weights)) / thickness / (2.0 * math.pi)
     if same_face:  # with the half space

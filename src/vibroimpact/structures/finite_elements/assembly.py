@@ -30,16 +30,21 @@ def scaled_shapes(mesh: Mesh, block: ElementBlock) -> Iterator[tuple[Floats, Flo
     gradients : array, shape (dimension, elements, points, nodes)
         Derivatives of N along each axis, times sqrt(dV).
     """
-    points, weights = block.element.quadrature()
-    values, reference_gradients = block.element.basis(points)
-    chunk_size = max(1, _CHUNK_NUMBERS // (values.shape[1] * values.size))
+    element = block.element
+    points, weights = element.quadrature()
+    values, reference_gradients = element.basis(points)
+    # products of all pairs of nodes at all points are the largest array of an element
+    numbers_per_element = values.shape[1] * values.size
+    chunk_size = max(1, _CHUNK_NUMBERS // numbers_per_element)
     for start in range(0, len(block.connectivity), chunk_size):
         elements = block.connectivity[start : start + chunk_size]
-        nodes = mesh.nodes[elements, : block.element.dimension]
+        nodes = mesh.nodes[elements, : element.dimension]
         jacobian = jacobians(nodes, reference_gradients)
-        root = np.sqrt(weights * np.linalg.det(jacobian))  # of dV
+        # dV = w det J, and dN/dx = J^-1 dN/dxi
+        root = np.sqrt(weights * np.linalg.det(jacobian))
         gradients = np.linalg.inv(jacobian) @ reference_gradients * root[:, :, None, None]
-        yield values * root[:, :, None], np.ascontiguousarray(gradients.transpose(2, 0, 1, 3))
+        by_axis = gradients.transpose(2, 0, 1, 3)
+        yield values * root[:, :, None], np.ascontiguousarray(by_axis)
 
 
 def pair_assembly(

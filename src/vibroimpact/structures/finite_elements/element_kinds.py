@@ -132,7 +132,9 @@ class ElementKind:
 
         There are none for plate elements.
         """
-        return tuple(_EDGES[self.corners]) if self.dimension == _SPACE else ()
+        if self.dimension != _SPACE:
+            return ()
+        return tuple(_EDGES[self.corners])
 
     def quadrature(self, degree: int | None = None) -> tuple[Floats, Floats]:
         """Return the points (points, dimension) and weights of a quadrature exact to a degree.
@@ -145,7 +147,9 @@ class ElementKind:
         >>> len(weights), round(float(weights.sum()), 12)
         (27, 1.0)
         """
-        return _quadrature(self.corners, self.dimension, self.degree if degree is None else degree)
+        if degree is None:
+            degree = self.degree
+        return _quadrature(self.corners, self.dimension, degree)
 
 
 @cache
@@ -231,20 +235,18 @@ def _tensor_lagrange(order: int, factors: Integers, points: Floats) -> Shape:
     axes = range(points.shape[1])
     # polynomials and derivatives along each axis, by node
     along = []
+    slopes_along = []
     for axis in axes:
         polynomials, derivatives = _lagrange(order, points[:, axis])
-        along.append(
-            (
-                polynomials.take(factors[:, axis], axis=1),
-                derivatives.take(factors[:, axis], axis=1),
-            )
-        )
-    values = reduce(np.multiply, [polynomials for polynomials, _ in along])
+        along.append(polynomials.take(factors[:, axis], axis=1))
+        slopes_along.append(derivatives.take(factors[:, axis], axis=1))
+    values = reduce(np.multiply, along)
     # the derivative along an axis is the product with the polynomial of that axis derived
-    gradients = [
-        reduce(np.multiply, [along[axis][1 if axis == derived else 0] for axis in axes])
-        for derived in axes
-    ]
+    gradients = []
+    for derived in axes:
+        product = along.copy()
+        product[derived] = slopes_along[derived]
+        gradients.append(reduce(np.multiply, product))
     return values, np.stack(gradients, axis=1)
 
 
@@ -282,10 +284,9 @@ def _wedge_shape(order: int, points: Floats) -> Shape:
         for _, by_area, _ in terms
     ]
     along_height = [by_t for _, _, by_t in terms]
-    gradients = np.concatenate(
-        [np.stack(along_triangle, axis=-1), 2.0 * np.stack(along_height, axis=-1)[:, None]], axis=1
-    )
-    return values, gradients
+    in_plane = np.stack(along_triangle, axis=-1)
+    upwards = 2.0 * np.stack(along_height, axis=-1)  # dt/dz = 2
+    return values, np.concatenate([in_plane, upwards[:, None]], axis=1)
 
 
 def _wedge_corner_terms(

@@ -25,7 +25,8 @@ def check_memory(
     """
     free = free_memory()
     if need > _PART_OF_MEMORY * free:
-        status = "are free" if _available() is not None else "are built in"
+        is_known = _available() is not None
+        status = "are free" if is_known else "are built in"
         raise InputError(
             f"{what} about {need / 1e9:.2g} GB of memory, and {free / 1e9:.2g} GB {status}, "
             f"of which {100.0 * _PART_OF_MEMORY:g} % may be used; {remedy}"

@@ -67,20 +67,23 @@ def mass_properties(mesh: Mesh, density: float | Floats, thickness: float = 1.0)
     ratios = np.broadcast_to(np.asarray(density) / mean_density, mesh.number_of_elements)
     ends = np.cumsum([len(block.connectivity) for block in mesh.blocks])[:-1]
     for block, ratio in zip(mesh.blocks, np.split(ratios, ends), strict=True):
-        is_plate = block.element.dimension == 2
-        points, weights = block.element.quadrature(max(_INERTIA_DEGREE, block.element.degree))
-        values, gradients = block.element.basis(points)
+        element = block.element
+        is_plate = element.dimension == 2
+        points, weights = element.quadrature(max(_INERTIA_DEGREE, element.degree))
+        values, gradients = element.basis(points)
         nodes = mesh.nodes[block.connectivity]
         height = thickness if is_plate else 1.0
         # of the quadrature points, weighted with the density
-        volumes = ratio[:, None] * weights * np.abs(determinants(nodes, gradients)) * height
+        jacobian = np.abs(determinants(nodes, gradients))
+        volumes = ratio[:, None] * weights * jacobian * height
         positions = np.einsum("qk,eki->eqi", values, nodes, optimize=True)
         volume += volumes.sum()
         first_moment += np.einsum("eq,eqi->i", volumes, positions)
         second_moment += np.einsum("eq,eqi,eqj->ij", volumes, positions, positions, optimize=True)
-        if is_plate:  # over the thickness
+        if is_plate:  # z^2 over the thickness: h^2/12
             second_moment[2, 2] += volumes.sum() * thickness**2 / 12.0
     centre = first_moment / volume
+    # Steiner's theorem, then J = tr(S) I - S
     about_centre = mean_density * (second_moment - volume * np.outer(centre, centre))
     inertia = np.trace(about_centre) * np.eye(3) - about_centre
     return MassProperties(float(mean_density * volume), centre, inertia)

@@ -24,18 +24,16 @@ _BRICK = np.rint(2.0 * ELEMENT_KINDS["hex27"].reference).astype(np.int64)
 
 def _tetrahedra(order: int) -> Integers:
     """Return the six tetrahedra around a diagonal of a brick, as indices into its 27 nodes."""
-    reference = ELEMENT_KINDS["tet4" if order == 1 else "tet10"].reference
-    steps = 2 * np.eye(3, dtype=np.int64)  # along the edges of the brick
+    kind = "tet4" if order == 1 else "tet10"
+    reference = ELEMENT_KINDS[kind].reference
+    steps = 2.0 * np.eye(3)  # along the edges of the brick
     tetrahedra = []
     # each path along three edges, from the first corner to the opposite one, is one tetrahedron
     for path in permutations(range(3)):
-        corners = [np.zeros(3, dtype=np.int64)]
-        for axis in path:
-            corners.append(corners[-1] + steps[axis])
-        if np.linalg.det(np.array(corners[1:]) - corners[0]) < 0.0:  # for a positive volume
-            corners[1], corners[2] = corners[2], corners[1]
-        edges = np.array(corners[1:], dtype=float) - corners[0]
-        tetrahedra.append(_brick_nodes_at(corners[0] + reference @ edges))
+        corners = np.cumsum(steps[list(path)], axis=0)  # after the first one, which is zero
+        if np.linalg.det(corners) < 0.0:  # for a positive volume
+            corners = corners[[1, 0, 2]]
+        tetrahedra.append(_brick_nodes_at(reference @ corners))
     return np.array(tetrahedra)
 
 
@@ -47,7 +45,8 @@ def _brick_nodes_at(points: Floats) -> list[int]:
 
 def _wedges(order: int) -> Integers:
     """Return the two wedges beside a diagonal plane of a brick, as indices into its 27 nodes."""
-    reference = ELEMENT_KINDS["wedge6" if order == 1 else "wedge15"].reference
+    kind = "wedge6" if order == 1 else "wedge15"
+    reference = ELEMENT_KINDS[kind].reference
     # images of the three reference directions; the wedges share their first corner
     halves = (
         np.array([[2, 0, 0], [2, 2, 0], [0, 0, 2]]),
@@ -167,4 +166,6 @@ def _right_handed(block: Floats) -> Floats:
         neighbour[axis] += 1
         edges.append(block[tuple(neighbour)] - block[middle])
     is_right_handed = np.linalg.det(np.array(edges)) > 0.0
-    return block if is_right_handed else block.transpose(1, 0, 2, 3)
+    if is_right_handed:
+        return block
+    return block.transpose(1, 0, 2, 3)

@@ -151,7 +151,9 @@ class Mesh:
         matches = [other for other in known if other == name]
         matches += [other for other in known if other.lower() == name.lower()]
         if not matches:
-            have = f"there are {', '.join(known)}" if known else "it has no named sets"
+            have = "it has no named sets"
+            if known:
+                have = f"there are {', '.join(known)}"
             raise InputError(f'the mesh has no set "{name}"; {have}.{did_you_mean(name, known)}')
         set_name = matches[0]
         if set_name in self.node_sets:
@@ -180,4 +182,6 @@ def _material_text(material: Material) -> str:
         f"{material.density:.4g} kg/m3, {1e-9 * material.youngs_modulus:.4g} GPa, "
         f"{material.poissons_ratio:.3g}"
     )
-    return f"{quoted(material.name)[1:-1]} ({numbers})" if material.name else f"({numbers})"
+    if not material.name:
+        return f"({numbers})"
+    return f"{quoted(material.name)[1:-1]} ({numbers})"

@@ -39,13 +39,15 @@ def outline(mesh: Mesh) -> tuple[Floats, Floats]:
     edges = []
     for faces, is_free in zip(groups, _free_sides(groups), strict=True):
         corners = _CORNERS[len(faces.corners)]
-        ends = np.roll(corners, -1, axis=0)
-        for side, (start, end) in enumerate(zip(corners, ends, strict=True)):
-            values, _ = faces.shape_functions(start + along * (end - start))
-            nodes = mesh.nodes[faces.connectivity[is_free[:, side]], :2]
-            points = np.einsum("qk,eki->eqi", values, nodes)
+        for side, start in enumerate(corners):
+            end = corners[(side + 1) % len(corners)]
+            local = start + along * (end - start)
+            values, _ = faces.shape_functions(local)
+            with_free_side = faces.connectivity[is_free[:, side]]
+            points = np.einsum("qk,eki->eqi", values, mesh.nodes[with_free_side, :2])
             gap = np.full_like(points[:, :1], np.nan)
-            edges.append(np.concatenate([points, gap], axis=1).reshape(-1, 2))
+            followed_by_gap = np.concatenate([points, gap], axis=1)
+            edges.append(followed_by_gap.reshape(-1, 2))
     x, y = np.concatenate(edges).T
     return np.ascontiguousarray(x), np.ascontiguousarray(y)
 

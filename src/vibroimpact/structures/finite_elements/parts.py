@@ -82,7 +82,9 @@ def part_at(mesh: Mesh, spot: Spot, side: Side) -> Mesh:
     touched_part = labels[_touched_node(mesh, np.isin(labels, parts), spot, side)]
     chosen = labels == touched_part
     others = [extent_text(mesh, labels == part) for part in parts if part != touched_part]
-    more = f" and {len(others) - _MOST_NAMED} more" if len(others) > _MOST_NAMED else ""
+    more = ""
+    if len(others) > _MOST_NAMED:
+        more = f" and {len(others) - _MOST_NAMED} more"
     remark = (
         f"the mesh file holds {len(parts)} parts that share no node and are not joined; "
         "the body is the one at the contact point, "
@@ -97,7 +99,8 @@ def _touched_node(mesh: Mesh, is_used: Bools, spot: Spot, side: Side) -> int:
     """Return a node near a spot on one side, of those that elements have."""
     if spot is None:  # of a curved surface, the highest or lowest node may be beside the faces
         height = np.where(is_used, mesh.nodes[:, 2], np.nan)
-        return int(np.nanargmax(height) if side == "upper" else np.nanargmin(height))
+        outermost = np.nanargmax if side == "upper" else np.nanargmin
+        return int(outermost(height))
     motion, _ = surface_motion(mesh, np.array([place_of(mesh, spot, side)]), side)
     vertical = motion[[2]]
     return int(vertical.indices[np.abs(vertical.data).argmax()]) // mesh.dofs_per_node
@@ -131,6 +134,9 @@ def _with_nodes(mesh: Mesh, chosen: Bools) -> Mesh:
     element_materials = mesh.element_materials
     if mesh.materials:
         element_materials = element_materials[element_is_chosen]
+    joints = mesh.joints
+    if joints is not None:
+        joints = joints.of_nodes(chosen)
     return replace(
         mesh,
         nodes=mesh.nodes[chosen],
@@ -139,7 +145,7 @@ def _with_nodes(mesh: Mesh, chosen: Bools) -> Mesh:
         element_sets=_renumbered_sets(mesh.element_sets, element_is_chosen, new_element),
         element_materials=element_materials,
         stated=_stated_for(mesh.stated, element_is_chosen),
-        joints=None if mesh.joints is None else mesh.joints.of_nodes(chosen),
+        joints=joints,
     )
 
 

@@ -86,9 +86,9 @@ def assemble_plate(
     lame = material.youngs_modulus * ratio / (1.0 - ratio**2)  # in plane stress
     if shear_correction is None:
         shear_correction = shear_factor(ratio)
-    shear_stiffness = (
-        shear_correction * shear_modulus * thickness * (1.0 if is_thick else _THIN_SHEAR)
-    )
+    shear_stiffness = shear_correction * shear_modulus * thickness  # s G h
+    if not is_thick:
+        shear_stiffness *= _THIN_SHEAR
     second_moment = thickness**3 / 12.0
 
     # chunks of values and gradients of the shape functions times sqrt(dA)
@@ -96,21 +96,19 @@ def assemble_plate(
     summed, matrix = pair_assembly(mesh)
     # integrals of N_a N_b, and of dN_a/dx_i dN_b/dx_j
     value_products = summed([values.transpose(0, 2, 1) @ values for values, _ in chunks])
-    gradient_products = np.array(
-        [
-            [
-                summed([gradients[i].transpose(0, 2, 1) @ gradients[j] for _, gradients in chunks])
-                for j in range(2)
-            ]
-            for i in range(2)
-        ]
-    )
+    gradient_products = np.empty((2, 2, len(value_products)))
+    for i in range(2):
+        for j in range(2):
+            products = [gradients[i].transpose(0, 2, 1) @ gradients[j] for _, gradients in chunks]
+            gradient_products[i, j] = summed(products)
     plane_stress = isotropic(gradient_products, lame, shear_modulus)
 
     # blocks of pairs of nodes, with the degrees of freedom u, v, w and two slopes
     stiffness, mass = np.zeros((2, len(value_products), 5, 5))
+    # membrane and bending: h eps^T C eps and h^3/12 kappa^T C kappa
     stiffness[:, :2, :2] = thickness * plane_stress
     stiffness[:, 3:, 3:] = second_moment * plane_stress
+    # shear: s G h (|grad w|^2 + 2 grad w . beta + |beta|^2)
     stiffness[:, 2, 2] = shear_stiffness * np.trace(gradient_products)
     for axis in range(2):
         slope = 3 + axis

@@ -61,7 +61,9 @@ def solid_plate_mesh(
     """
     most_elements = MOST_NODES // _NODES_PER_ELEMENT
     if (size[0] / element_size) * (size[1] / element_size) * layers > most_elements:
-        remedy = "make them larger, or take fewer layers" if layers > 1 else "make them larger"
+        remedy = "make them larger"
+        if layers > 1:
+            remedy += ", or take fewer layers"
         raise InputError(
             f"elements of {element_size:g} m in {layers} layer{'s' if layers > 1 else ''} "
             f"would be more than {most_elements}; {remedy}"
@@ -132,4 +134,6 @@ def _right_handed(block: Floats) -> Floats:
     first = block[1, 0] - block[0, 0]
     second = block[0, 1] - block[0, 0]
     is_right_handed = first[0] * second[1] > first[1] * second[0]
-    return block if is_right_handed else block.transpose(1, 0, 2)
+    if is_right_handed:
+        return block
+    return block.transpose(1, 0, 2)

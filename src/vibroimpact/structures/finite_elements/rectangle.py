@@ -160,7 +160,8 @@ def _box(disc: Disc, size: Sequence[float], discs: Sequence[Disc]) -> tuple[Inte
 def _refuse_near_edge(disc: Disc, centre: float, length: float, axis: str, name: str) -> None:
     """Raise if a disc is too near to the edges of the plate across an axis."""
     for edge in (-0.5 * length, 0.5 * length):
-        distance = (edge - centre) * (1.0 if edge > 0.0 else -1.0)
+        # negative where the centre lies beyond the edge
+        distance = np.sign(edge) * (edge - centre)
         if distance >= CLOSEST * disc.radius:
             continue
         fault = "is too near to the edge of the plate"
@@ -176,13 +177,16 @@ def _refuse_near_edge(disc: Disc, centre: float, length: float, axis: str, name:
 
 def _box_side(centre: float, length: float, reach: float, radius: float) -> Interval:
     """Return the ends of a box along an axis, at the edges of the plate if these are near."""
-    low = -0.5 * length
-    high = 0.5 * length
+    low_edge = -0.5 * length
+    high_edge = 0.5 * length
     near = reach + 0.5 * radius  # no sliver along the edge
-    return (
-        low if centre - low < near else centre - reach,
-        high if high - centre < near else centre + reach,
-    )
+    low = centre - reach
+    if centre - low_edge < near:
+        low = low_edge
+    high = centre + reach
+    if high_edge - centre < near:
+        high = high_edge
+    return low, high
 
 
 def _distinct(positions: Sequence[float], length: float) -> Floats:
@@ -256,8 +260,10 @@ def _blocks_around(
     """
     centre = np.array([disc.x, disc.y])
     # positions along each side of the box, from -1 to 1
-    along_x = 2.0 * (xs - xs[0]) / (xs[-1] - xs[0]) - 1.0
-    along_y = 2.0 * (ys - ys[0]) / (ys[-1] - ys[0]) - 1.0
+    length = xs[-1] - xs[0]
+    width = ys[-1] - ys[0]
+    along_x = 2.0 * (xs - xs[0]) / length - 1.0
+    along_y = 2.0 * (ys - ys[0]) / width - 1.0
     rings = _rings(disc, xs, ys, along_x, along_y)
     square = np.stack(np.meshgrid(along_x, along_y, indexing="ij"), axis=-1)
     blocks = [centre + _CORE * disc.radius * square]
@@ -270,11 +276,12 @@ def _blocks_around(
             corners = 1.0 - split_at(1.0 - corners[::-1], splits)[::-1]
         else:
             corners = split_at(corners, splits)
+        # straight lines from the inner ring to the outer one
         step = with_midpoints(corners, order)[None, :, None]
         for ring in rings:
-            blocks.append(
-                centre + (1.0 - step) * ring[inner][:, None] + step * ring[outer][:, None]
-            )
+            start = ring[inner][:, None]
+            end = ring[outer][:, None]
+            blocks.append(centre + (1.0 - step) * start + step * end)
     return blocks
 
 

@@ -153,7 +153,9 @@ def plate_structure(
     """
     check_mesh(mesh)
     properties = mass_properties(mesh, material.density, thickness)
-    bed = bed_stiffness(material, thickness) if theory == "thick" else None
+    bed = None
+    if theory == "thick":
+        bed = bed_stiffness(material, thickness)
     stiffness, mass = assemble_plate(mesh, material, thickness, theory, shear_correction)
     return Structure(
         mesh,

@@ -28,6 +28,7 @@ _OUTSIDE = 1e-6
 # by which gradients on faces of pyramids are taken nearer to the middle of the face
 _FROM_APEX = 1e-9
 _MIDDLE = 1.0 / 3.0  # local coordinates of the middle of a triangle
+_SINGULAR = 1e-14  # of the square of the largest derivative: determinant of a face seen edge on
 _NEWTON_STEPS = 20
 # last step of Newton's method in local coordinates: it is quadratic, so that the rest is rounding
 _CONVERGED = 1e-10
@@ -94,7 +95,9 @@ class Faces:
     def distance_outside(self, local: Floats) -> Floats:
         """Return the distance of points outside the face in its local coordinates, <= 0 inside."""
         is_triangle = len(self.corners) == 3
-        farthest = local.sum(axis=1) if is_triangle else local.max(axis=1)
+        farthest = local.max(axis=1)
+        if is_triangle:  # whose third side is a + b = 1
+            farthest = local.sum(axis=1)
         return np.asarray(np.maximum(-local.min(axis=1), farthest - 1.0))
 
 
@@ -137,7 +140,9 @@ def facing(mesh: Mesh, side: Side) -> list[Faces]:
     for faces in groups:
         corner = mesh.nodes[faces.connectivity[:, list(faces.corners)]]
         normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-        outward = normal[:, 2] if side == "upper" else -normal[:, 2]
+        outward = normal[:, 2]
+        if side == "lower":
+            outward = -outward
         area = np.linalg.norm(normal, axis=1)
         is_facing = outward > 1e-3 * area  # False for a degenerate face without area
         if is_facing.any():
@@ -151,7 +156,9 @@ def lower_nodes(mesh: Mesh) -> Integers:
     if mesh.is_flat:
         return np.arange(len(mesh.nodes))
     nodes = [faces.connectivity[:, faces.has_node].ravel() for faces in facing(mesh, "lower")]
-    return np.unique(np.concatenate(nodes)) if nodes else np.zeros(0, dtype=np.int64)
+    if not nodes:
+        return np.zeros(0, dtype=np.int64)
+    return np.unique(np.concatenate(nodes))
 
 
 def place_of(mesh: Mesh, spot: Spot, side: Side) -> tuple[float, float]:
@@ -168,7 +175,9 @@ def place_of(mesh: Mesh, spot: Spot, side: Side) -> tuple[float, float]:
         x, y = mesh.nodes[mesh.nodes_of(spot), :2].mean(axis=0)
     else:
         height = mesh.nodes[:, 2]
-        extreme_node = height.argmax() if side == "upper" else height.argmin()
+        extreme_node = height.argmax()
+        if side == "lower":
+            extreme_node = height.argmin()
         x, y = mesh.nodes[extreme_node, :2]
     return float(x), float(y)
 
@@ -227,14 +236,15 @@ def surface_motion(
             index, face, local = _locate(mesh.nodes, faces, places[unlocated], start)
             if not len(index):
                 continue
-            values = faces.shape_functions(local)[0]
-            points = np.einsum("pk,pki->pi", values, mesh.nodes[faces.connectivity[face]])
+            values, _ = faces.shape_functions(local)
+            nodes_of_pair = faces.connectivity[face]
+            points = np.einsum("pk,pki->pi", values, mesh.nodes[nodes_of_pair])
             for pair, place in enumerate(unlocated[index].tolist()):
                 height = sign * points[pair, 2]
                 if height > outermost[place]:
                     outermost[place] = height
                     positions[place] = points[pair]
-                    nodes[place] = faces.connectivity[face[pair]]
+                    nodes[place] = nodes_of_pair[pair]
                     weights[place] = values[pair]
     off_body = np.flatnonzero(np.isneginf(outermost))
     if len(off_body):
@@ -471,19 +481,21 @@ def _rows(mesh: Mesh, nodes: list[Integers], weights: list[Floats], height: floa
 
     Points of plate elements are at a height above the nodes.
     """
-    point = np.repeat(np.arange(len(nodes)), [len(point_nodes) for point_nodes in nodes])
+    nodes_of_point = [len(point_nodes) for point_nodes in nodes]
+    point = np.repeat(np.arange(len(nodes)), nodes_of_point)
     node = np.concatenate(nodes)
     weight = np.concatenate(weights)
-    per_node = mesh.dofs_per_node
-    rows = [3 * point + axis for axis in range(3)]
-    columns = [per_node * node + axis for axis in range(3)]
+    first_row = 3 * point
+    first_column = mesh.dofs_per_node * node
+    rows = [first_row + axis for axis in range(3)]
+    columns = [first_column + axis for axis in range(3)]
     values = [weight] * 3
-    if mesh.is_flat:  # the slopes displace a point above the middle plane
-        rows += [3 * point + axis for axis in range(2)]
-        columns += [per_node * node + 3 + axis for axis in range(2)]
+    if mesh.is_flat:  # u + z beta_x, v + z beta_y: the slopes are degrees of freedom 3 and 4
+        rows += [first_row + axis for axis in range(2)]
+        columns += [first_column + 3 + axis for axis in range(2)]
         values += [height * weight] * 2
     coordinates = (np.concatenate(rows), np.concatenate(columns))
-    shape = (3 * len(nodes), per_node * len(mesh.nodes))
+    shape = (3 * len(nodes), mesh.dofs_per_node * len(mesh.nodes))
     return csr_array(coo_array((np.concatenate(values), coordinates), shape=shape))
 
 
@@ -494,25 +506,32 @@ def _locate(
 
     They are found by Newton's method, for all pairs that may match at once.
     """
-    positions = nodes[faces.connectivity][:, :, :2]
-    place, face, size = _candidates(positions[:, list(faces.corners)], places)
-    local = np.tile(start, (len(place), 1))
-    error = np.zeros((len(place), 2))
-    is_singular = np.zeros(len(place), dtype=bool)
-    steps = _NEWTON_STEPS if len(place) else 0
+    face_nodes = nodes[faces.connectivity][:, :, :2]
+    place, face, size = _candidates(face_nodes[:, list(faces.corners)], places)
+    number = len(place)
+    nodes_of_pair = face_nodes[face]
+    local = np.tile(start, (number, 1))
+    error = np.zeros((number, 2))
+    is_singular = np.zeros(number, dtype=bool)
+    steps = _NEWTON_STEPS if number else 0
     for _ in range(steps):
+        # x(xi) - x of the place, and dx/dxi
         values, slopes = faces.shape_functions(local)
-        error = np.einsum("pk,pki->pi", values, positions[face]) - places[place]
-        jacobian = (slopes @ positions[face]).transpose(0, 2, 1)  # of x and y
+        error = np.einsum("pk,pki->pi", values, nodes_of_pair) - places[place]
+        jacobian = (slopes @ nodes_of_pair).transpose(0, 2, 1)
+        # a face seen edge on has no inverse; its steps do not count
         scale = np.abs(jacobian).max(axis=(1, 2), initial=1e-300)
-        is_singular = np.abs(np.linalg.det(jacobian)) < 1e-14 * scale**2
+        determinant = np.abs(np.linalg.det(jacobian))
+        is_singular = determinant < _SINGULAR * scale**2
         jacobian[is_singular] = np.eye(2)
         step = np.linalg.solve(jacobian, error[:, :, None])[:, :, 0]
+        # kept near the face, or one wild step would be the last
         local = np.clip(local - step, -1.0, 2.0)
         if np.abs(step).max() < _CONVERGED:
             break
-    missed = np.linalg.norm(error, axis=1) > _OUTSIDE * size[face].max(axis=1)
-    is_inside = (faces.distance_outside(local) <= _OUTSIDE) & ~missed & ~is_singular
+    has_missed = np.linalg.norm(error, axis=1) > _OUTSIDE * size[face].max(axis=1)
+    is_on_face = faces.distance_outside(local) <= _OUTSIDE
+    is_inside = is_on_face & ~has_missed & ~is_singular
     return place[is_inside], face[is_inside], local[is_inside]
 
 

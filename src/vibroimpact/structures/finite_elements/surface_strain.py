@@ -45,7 +45,8 @@ def surface_strain(
     [2.999, 1.99, 0.999]
     """
     nodes, gradients = face_gradients(mesh, place, side)  # (k,), (2, k)
-    height = (0.5 if side == "upper" else -0.5) * thickness
+    sign = 1.0 if side == "upper" else -1.0
+    height = sign * 0.5 * thickness
     # first degree of freedom of a node, and factor: displacements, and slopes times the height
     motions = [(0, 1.0)]
     if mesh.is_flat:

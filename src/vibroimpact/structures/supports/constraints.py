@@ -320,13 +320,12 @@ class Constraints:
         stiffness = block_diag([structure.stiffness, *body_stiffness], format="csr") + added
         body_mass = [mass for _, mass, _ in self._bodies]
         mass = block_diag([structure.mass, *body_mass], format="csr")
+        matrices = (stiffness, mass, beds)
         if not self._ties and not self._bodies:  # no projection is needed
-            reduced = [csr_array(matrix) for matrix in (stiffness, mass, beds)]
-        else:
+            reduced = [csr_array(matrix) for matrix in matrices]
+        else:  # K_r = T^T K T
             transposed = expansion.T.tocsr()
-            reduced = [
-                csr_array(transposed @ matrix @ expansion) for matrix in (stiffness, mass, beds)
-            ]
+            reduced = [csr_array(transposed @ matrix @ expansion) for matrix in matrices]
         body_motions = [rigid for _, _, rigid in self._bodies]
         motions = np.concatenate([structure.rigid_motions(), *body_motions])
         coefficients = self._rigid_coefficients(motions, expansion, free, added)
@@ -402,8 +401,10 @@ class Constraints:
         These violate no tie and strain no spring.
         """
         # rotations in units of displacement
-        scale = np.repeat([1.0, 1.0 / np.ptp(self.structure.mesh.nodes, axis=0).max()], 3)
+        extent = np.ptp(self.structure.mesh.nodes, axis=0).max()
+        scale = np.repeat([1.0, 1.0 / extent], 3)
         motions = motions * scale
+        # what ties make of a motion of the free degrees of freedom differs from the motion itself
         violations = motions - expansion @ motions[free]
         measure = violations.T @ violations / (motions.T @ motions).trace()
         energy = motions.T @ (added @ motions)
@@ -416,4 +417,5 @@ class Constraints:
             measure = measure + energy / np.abs(energy).max()
         # a permitted motion has neither: it is in the null space of the sum
         values, vectors = np.linalg.eigh(measure)
-        return np.asarray((scale[:, None] * vectors[:, values < _STILL]).T)
+        permitted = vectors[:, values < _STILL]
+        return np.asarray((scale[:, None] * permitted).T)

@@ -72,8 +72,11 @@ class Edge(Support):
         InputError
             If there are fewer than three.
         """
-        positions = mesh.nodes[:, 0 if self.edge[0] == "x" else 1]
-        end = positions.min() if self.edge.endswith("min") else positions.max()
+        axis = 0 if self.edge[0] == "x" else 1
+        positions = mesh.nodes[:, axis]
+        end = positions.max()
+        if self.edge.endswith("min"):
+            end = positions.min()
         nodes = np.flatnonzero(np.abs(positions - end) <= _FLAT * np.ptp(positions))
         if len(nodes) < 3:
             raise InputError(

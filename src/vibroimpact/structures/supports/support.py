@@ -124,7 +124,9 @@ def nodes_within(
     else:
         is_inside = (np.abs(offset) <= limit).all(axis=1)
     if is_inside.sum() < 3:
-        count = "no nodes" if not is_inside.any() else f"only {is_inside.sum()} of the nodes"
+        count = "no nodes"
+        if is_inside.any():
+            count = f"only {is_inside.sum()} of the nodes"
         raise InputError(
             f"{what} at ({x:g}, {y:g}) m holds {count} on the lower side of the mesh, and "
             "needs three or more; "
