@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.meshes.abaqus_blocks import Block
+from vibroimpact.meshes.abaqus_blocks import Block, real_or_zero
 from vibroimpact.meshes.text_files import TextLine, parse_integer, parse_real
 from vibroimpact.quoting import quoted
 
@@ -37,7 +37,9 @@ class _Instance:
 
     def renamed(self, text: str, line: TextLine) -> str:
         """Return the number or name in the flat mesh."""
-        return self.number(text, line) if text.isdigit() else f"{self.name}.{text}"
+        if text.isdigit():
+            return self.number(text, line)
+        return f"{self.name}.{text}"
 
     def number(self, text: str, line: TextLine) -> str:
         """Return the number in the flat mesh."""
@@ -132,8 +134,12 @@ def flattened(file_blocks: Iterable[Block]) -> Iterator[Block]:
             instance = None
         elif instance is not None:
             yield _moved(block, instance)
-        elif keyword not in ("ASSEMBLY", "END ASSEMBLY"):
-            yield _of_assembly(block, instances, assembly) if "ASSEMBLY" in opened else block
+        elif keyword in ("ASSEMBLY", "END ASSEMBLY"):
+            pass
+        elif "ASSEMBLY" in opened:
+            yield _of_assembly(block, instances, assembly)
+        else:
+            yield block
     if opened:
         keyword, line = opened.popitem()
         raise line.wrong(
@@ -239,7 +245,7 @@ def _motion(block: Block) -> tuple[Floats, Floats]:
 def _numbers(line: TextLine) -> list[float]:
     """Return the numbers of a data line; zero where an entry is blank."""
     texts = line.text.rstrip(" ,").split(",")
-    return [parse_real(text, line) if text.strip() else 0.0 for text in texts]
+    return [real_or_zero(text, line) for text in texts]
 
 
 def _moved(block: Block, instance: _Instance) -> Block:
@@ -256,7 +262,7 @@ def _moved_node(line: TextLine, instance: _Instance) -> TextLine:
     """Return the line of a node of a part as that of an instance of it."""
     texts = line.text.split(",")
     coordinates = [*texts[1:4], "", "", ""][:3]
-    position = np.array([parse_real(text, line) if text.strip() else 0.0 for text in coordinates])
+    position = np.array([real_or_zero(text, line) for text in coordinates])
     # what is not finite is refused where the node is read
     with np.errstate(invalid="ignore", over="ignore"):
         x, y, z = (instance.rotation @ position + instance.shift).tolist()
@@ -273,7 +279,9 @@ def _of_assembly(block: Block, instances: dict[str, _Instance], assembly: _Insta
         raise block.line.wrong(
             f"there is no instance {quoted(name)} before this line; it must be one of the assembly"
         )
-    stated = assembly if name is None else instances[name.upper()]
+    stated = assembly
+    if name is not None:
+        stated = instances[name.upper()]
 
     def renamed(text: str, line: TextLine) -> str:
         first, _, rest = text.partition(".")
@@ -291,11 +299,14 @@ def _of_assembly(block: Block, instances: dict[str, _Instance], assembly: _Insta
 
 def _renamed_parameters(block: Block, renamed: Callable[[str], str]) -> dict[str, str]:
     """Return the parameters of a block with other names of sets."""
-    keys = (*_SET_NAMES, "NAME") if block.keyword == "SURFACE" else _SET_NAMES
-    return {
-        key: renamed(value) if key in keys and value else value
-        for key, value in block.parameters.items()
-    }
+    keys = {*_SET_NAMES}
+    if block.keyword == "SURFACE":
+        keys.add("NAME")
+    parameters = dict(block.parameters)
+    for key, value in block.parameters.items():
+        if key in keys and value:
+            parameters[key] = renamed(value)
+    return parameters
 
 
 def _renamed_lines(block: Block, renamed: Renamed) -> list[TextLine]:
@@ -306,11 +317,12 @@ def _renamed_lines(block: Block, renamed: Renamed) -> list[TextLine]:
     if keyword not in _NUMBERED:
         return block.data
     if keyword == "EQUATION":
-        # a line of one entry is the number of terms; the first entry of a term is a node
-        return [
-            _renamed_line(line, renamed, 0, _TERMS) if "," in line.text.rstrip(" ,") else line
-            for line in block.data
-        ]
+        lines = []
+        for line in block.data:
+            # a line of one entry is the number of terms; the first entry of a term is a node
+            has_terms = "," in line.text.rstrip(" ,")
+            lines.append(_renamed_line(line, renamed, 0, _TERMS) if has_terms else line)
+        return lines
     if keyword in ("SURFACE", "KINEMATIC COUPLING"):  # the first entry alone
         return [_renamed_line(line, renamed, 0, len(line.text)) for line in block.data]
     if "GENERATE" in block.parameters:
@@ -336,7 +348,9 @@ def _generated(line: TextLine, renamed: Renamed) -> Iterator[str]:
     for index, text in enumerate(part.strip() for part in line.text.split(",")):
         if index == 1 and text.isdigit() and len(text) <= 18:
             text = str(min(int(text), SPAN - 1))
-        yield renamed(text, line) if index < 2 and text.isdigit() else text
+        if index < 2 and text.isdigit():
+            text = renamed(text, line)
+        yield text
 
 
 def _all_elements(line: TextLine, instance: _Instance) -> Block:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from vibroimpact.meshes.text_files import TextLine
+from vibroimpact.meshes.text_files import TextLine, parse_real
 
 _PARAMETER = re.compile(r'(?:"[^"]*"|[^,])+')
 _INCLUDED = re.compile(
@@ -36,8 +36,19 @@ def abaqus_include(text: str) -> str | None:
     >>> abaqus_include("*Include, input=mesh/plate.inp")
     'mesh/plate.inp'
     """
-    statement = _INCLUDED.match(text.strip()) if text.lstrip().startswith("*") else None
-    return (statement[1] or statement[2]).strip() if statement else None
+    if not text.lstrip().startswith("*"):
+        return None
+    statement = _INCLUDED.match(text.strip())
+    if statement is None:
+        return None
+    return (statement[1] or statement[2]).strip()
+
+
+def real_or_zero(text: str, line: TextLine) -> float:
+    """Return the number of an entry; zero where it is blank."""
+    if not text.strip():
+        return 0.0
+    return parse_real(text, line)
 
 
 def blocks(lines: Iterable[TextLine]) -> Iterator[Block]:

@@ -131,8 +131,10 @@ class _Reader:
             entries: list[str] = []
             while index < len(lines) and len(entries) < _TERMS * count:
                 texts = lines[index][1]
-                # what follows the last whole term of a line, as after a comma, is no entry
-                entries += texts[: len(texts) - len(texts) % _TERMS] if len(texts) > 1 else texts
+                if len(texts) > 1:
+                    # what follows the last whole term of a line, as after a comma, is no entry
+                    texts = texts[: len(texts) - len(texts) % _TERMS]
+                entries += texts
                 index += 1
             if len(entries) < _TERMS * count:
                 raise line.wrong(
@@ -189,18 +191,19 @@ class _Reader:
         """
         left_out = []
         for line in block.data:
-            kind, *texts = [text.strip() for text in line.text.split(",") if text.strip()] or [""]
-            kind = kind.upper()
-            sets = [self._in_order(text, line) for text in texts]
+            entries = [text.strip() for text in line.text.split(",") if text.strip()]
+            kind = entries[0].upper() if entries else ""
+            sets = [self._in_order(text, line) for text in entries[1:]]
             is_pair = len(sets) == 2 and len(sets[0]) == len(sets[1]) > 0
             if kind not in ("TIE", "PIN", "LINK") or not is_pair:
                 left_out.append("MPC")
                 continue
+            components = _DISPLACEMENTS if kind == "PIN" else _ALL
             for first, second in zip(*sets, strict=True):
                 if kind == "LINK":
                     self.parts.links.add("*MPC", Distance(line, (first, second)))
                     continue
-                for component in _DISPLACEMENTS if kind == "PIN" else _ALL:
+                for component in components:
                     terms = [((first, component), 1.0), ((second, component), -1.0)]
                     self.parts.links.add("*MPC", Equation(line, terms))
         return left_out
@@ -219,7 +222,9 @@ class _Reader:
                 left_out.append("TIE")
                 continue
             text = block.parameters.get("POSITION TOLERANCE")
-            reach = parse_real(text, block.line, "a position tolerance") if text else None
+            reach = None
+            if text:
+                reach = parse_real(text, block.line, "a position tolerance")
             if reach is not None and not 0.0 <= reach < float("inf"):
                 raise block.line.wrong(
                     f"the position tolerance is {reach:g}; it must be 0 or greater, and finite"
@@ -310,7 +315,9 @@ class _Reader:
         if text.isdigit():
             return [parse_integer(text, line, "the number of a node")]
         selection = self.known("NSET", text) if text else None
-        return [] if selection is None else self.parts.node_numbers(selection)
+        if selection is None:
+            return []
+        return self.parts.node_numbers(selection)
 
     def _in_order(self, text: str, line: TextLine) -> list[int]:
         """Return the nodes of a set in the order in which they are paired with others.
@@ -348,7 +355,8 @@ class _Reader:
             elements = self._elements(texts[0], line)
             if elements is None or (label and label not in _FACES):
                 return None
-            surface.faces.append((elements, _FACES[label] if label else {}))
+            face = _FACES[label] if label else {}
+            surface.faces.append((elements, face))
         return surface
 
     def _elements(self, text: str, line: TextLine) -> Selection | None:

@@ -55,7 +55,9 @@ class AbaqusMaterials:
             self._open = name.upper()
             self._materials.setdefault(self._open, StatedMaterial(name))
         elif keyword == _SOLID and parameters.get("ELSET"):
-            material = "" if "COMPOSITE" in parameters else parameters.get("MATERIAL", "")
+            material = parameters.get("MATERIAL", "")
+            if "COMPOSITE" in parameters:
+                material = ""
             self._sections.append((block.line, parameters["ELSET"], material))
         elif self._open not in self._materials:
             return False
@@ -76,10 +78,11 @@ class AbaqusMaterials:
             name.upper(): StatedMaterial(name) for _, _, name in self._sections if name
         } | self._materials
         composite = StatedMaterial("*SOLID SECTION", other="a layered composite")
-        return [
-            (line, elements, materials[name.upper()] if name else composite)
-            for line, elements, name in self._sections
-        ]
+        sections = []
+        for line, elements, name in self._sections:
+            material = materials[name.upper()] if name else composite
+            sections.append((line, elements, material))
+        return sections
 
     def _elastic(self, block: Block) -> None:
         """Read the elastic constants of the open material."""

@@ -85,12 +85,11 @@ def deck_mesh(mesh: Mesh, material: Material | None = None) -> DeckMesh:
 
 def _owners(mesh: Mesh) -> Integers:
     """Return the element of the mesh from which each element of the deck is made."""
-    # four shells of each plate element
-    parts = [
-        np.full(len(block.connectivity), 4 if block.kind == "quad25" else 1)
-        for block in mesh.blocks
-    ]
-    return np.repeat(np.arange(mesh.number_of_elements), np.concatenate(parts))
+    elements_made = []
+    for block in mesh.blocks:
+        number = 4 if block.kind == "quad25" else 1  # four shells of each plate element
+        elements_made.append(np.full(len(block.connectivity), number))
+    return np.repeat(np.arange(mesh.number_of_elements), np.concatenate(elements_made))
 
 
 def _materials(mesh: Mesh, material: Material | None) -> tuple[dict[int, Material], Integers]:
@@ -98,7 +97,9 @@ def _materials(mesh: Mesh, material: Material | None) -> tuple[dict[int, Materia
 
     Elements without a material of their own have that of the body, of number -1.
     """
-    numbers = mesh.element_materials if mesh.materials else np.full(mesh.number_of_elements, -1)
+    numbers = np.full(mesh.number_of_elements, -1)
+    if mesh.materials:
+        numbers = mesh.element_materials
     materials = {
         number: stated for number, stated in enumerate(mesh.materials) if number in numbers
     }

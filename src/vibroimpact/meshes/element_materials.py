@@ -270,25 +270,30 @@ def _with_named(mesh: Mesh, named: Mapping[str, Material]) -> Mesh:
         for index, material in enumerate(stated):
             sets[material.name] = np.flatnonzero(mesh.stated.of_elements == index)
     numbers = np.full(mesh.number_of_elements, -1)
-    for number, name in enumerate(named):
+    names = list(named)
+    for number, name in enumerate(names):
         members = _members(sets, name)
         earlier = numbers[members]
         clashes = earlier[(earlier >= 0) & (earlier != number)]
         if len(clashes):
-            shared = int((clashes == clashes[0]).sum())
-            raise _clash(name, list(named)[int(clashes[0])], shared)
+            other = int(clashes[0])
+            shared = int((clashes == other).sum())
+            raise _clash(name, names[other], shared)
         numbers[members] = number
     # a single material of the file remains that of the elements that no name takes
     if len({_properties(material) for material in stated}) > 1:
         for material in stated:
             members = sets[material.name]
-            _check_all_named(material, len(members), int((numbers[members] < 0).sum()))
+            unnamed = int((numbers[members] < 0).sum())
+            _check_all_named(material, len(members), unnamed)
     return replace(mesh, materials=tuple(named.values()), element_materials=numbers, stated=None)
 
 
 def _clash(name: str, other: str, shared: int) -> InputError:
     """Return an error that names two sets which share elements."""
-    elements = "an element, which" if shared == 1 else f"{shared} elements, each of which"
+    elements = "an element, which"
+    if shared > 1:
+        elements = f"{shared} elements, each of which"
     return InputError(
         f'"{name}" and "{other}" share {elements} can have one material only; name '
         "sets that share none",
@@ -308,11 +313,13 @@ def _check_all_named(material: StatedMaterial, count: int, unnamed: int) -> None
     """
     if not unnamed:
         return
-    elements = "an element" if unnamed == 1 else f"{unnamed} elements"
+    elements = f"{unnamed} elements"
+    missing = "a set that contains them"
+    if unnamed == 1:
+        elements = "an element"
+        missing = "a set that contains it"
     if unnamed == count:
         missing = "it"
-    else:
-        missing = f"a set that contains {'it' if unnamed == 1 else 'them'}"
     raise InputError(
         f'the names leave out {elements} of the material "{material.name}" of the file; '
         f"name {missing} too",
@@ -333,7 +340,9 @@ def _members(sets: Mapping[str, Integers], name: str) -> Integers:
     for other, members in sets.items():
         if other.lower() == name.lower():
             return members
-    names = f"it has {listed(sets)}" if sets else "it has neither"
+    names = "it has neither"
+    if sets:
+        names = f"it has {listed(sets)}"
     raise InputError(
         f'the file has no material or element set "{name}"; '
         f"{names}.{did_you_mean(name, list(sets))}",

@@ -27,13 +27,14 @@ def make_mesh(geometry: str, mesh: str, size: float, order: int) -> None:
     import gmsh  # type: ignore[import-untyped, unused-ignore]
 
     gmsh.initialize(readConfigFiles=False, interruptible=False)
+    # moves nodes until no curved element has a negative Jacobian
+    optimises = 2 if order > 1 else 0
     settings = {
         "General.Terminal": 0,
         "General.NumThreads": 1,
         "Mesh.MeshSizeMin": 0,
         "Mesh.ElementOrder": order,
-        # moves nodes until no curved element has a negative Jacobian
-        "Mesh.HighOrderOptimize": 2 if order > 1 else 0,
+        "Mesh.HighOrderOptimize": optimises,
         "Mesh.MshFileVersion": 4.1,
         "Mesh.Binary": 0,
     }

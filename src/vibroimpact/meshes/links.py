@@ -220,21 +220,27 @@ class _Unknowns:
         leader = next(
             (node for node, components in link.members if len(set(components)) == COMPONENTS), None
         )
-        owner = self._new_owner() if leader is None else leader
-        centre = self.position(link.line, link.members[0][0] if leader is None else leader)
+        owner: object
+        if leader is None:
+            owner = self._new_owner()
+            first_node, _ = link.members[0]
+            centre = self.position(link.line, first_node)
+        else:
+            owner = leader
+            centre = self.position(link.line, leader)
         equations = []
         for node, components in link.members:
             if node == leader:
                 continue
             # displacements by unit rotations, a column for each axis
-            by_rotation = rotation_columns(*self._arm(link.line, node, centre)[:, None])[0]
+            arm = self._arm(link.line, node, centre)
+            by_rotation = rotation_columns(*arm[:, None])[0]
             for component in components:
                 followed = [(self.number(owner, component), -1.0)]
                 if component < AXES:
-                    followed += [
-                        (self.number(owner, AXES + axis), -float(by_rotation[component, axis]))
-                        for axis in range(AXES)
-                    ]
+                    for axis in range(AXES):
+                        rotation = self.number(owner, AXES + axis)
+                        followed.append((rotation, -float(by_rotation[component, axis])))
                 equations.append(_sum([(self.number(node, component), 1.0), *followed]))
         return equations
 
@@ -244,13 +250,23 @@ class _Unknowns:
         Of this kind are RBE3 of Nastran and the distributing coupling of Abaqus.
         """
         centre = self.position(link.line, link.node)
-        arms = np.array([self._arm(link.line, node, centre) for node, _, _ in link.members])
-        weights = np.array([weight for _, weight, _ in link.members])
-        counted = np.array([[axis in axes for axis in range(AXES)] for _, _, axes in link.members])
-        fit, indeterminate = _mean_motion(arms, weights, counted, _COINCIDENT * self._extent)
+        arms = []
+        weights = []
+        counted = []
+        unknowns = []
+        for node, weight, axes in link.members:
+            arms.append(self._arm(link.line, node, centre))
+            weights.append(weight)
+            counted.append([axis in axes for axis in range(AXES)])
+            unknowns += [self.number(node, axis) for axis in range(AXES)]
+        coincident = _COINCIDENT * self._extent
+        fit, indeterminate = _mean_motion(
+            np.array(arms), np.array(weights), np.array(counted), coincident
+        )
+        # what the members do not show of the motion is an unknown of the link itself
         owner = self._new_owner()
-        unknowns = [self.number(node, axis) for node, _, _ in link.members for axis in range(AXES)]
         unknowns += [self.number(owner, index) for index in range(indeterminate.shape[1])]
+        # u - fit u_members - indeterminate q = 0
         coefficients = -np.concatenate([fit, indeterminate], axis=1)
         equations = []
         for component in link.components:
@@ -267,6 +283,7 @@ class _Unknowns:
             raise link.line.wrong(
                 "the two nodes whose distance is kept are at the same place; they must lie apart"
             )
+        # e . (u_2 - u_1) = 0, with the unit vector e of the line
         direction = (arm / length).tolist()
         terms = [(self.number(second, axis), cosine) for axis, cosine in enumerate(direction)]
         terms += [(self.number(first, axis), -cosine) for axis, cosine in enumerate(direction)]
@@ -309,22 +326,20 @@ def _mean_motion(
         unit = 1.0
     # displacements of the members by the six rigid motions about the weighted mean
     translations = np.broadcast_to(np.eye(3), (len(arms), 3, 3))
-    rigid = np.concatenate([translations, rotation_columns(*(from_mean / unit).T)], axis=2)
+    rotations = rotation_columns(*(from_mean / unit).T)
+    rigid = np.concatenate([translations, rotations], axis=2)
     root_weights = (np.sqrt(weights)[:, None] * counted).ravel()
-    # at least six rows, so that there are six singular values
-    rows = np.zeros((max(len(root_weights), COMPONENTS), COMPONENTS))
-    rows[: len(root_weights)] = root_weights[:, None] * rigid.reshape(-1, COMPONENTS)
+    # least squares by the singular values of W^1/2 A, at least six rows, so that there are six
+    number = len(root_weights)
+    rows = np.zeros((max(number, COMPONENTS), COMPONENTS))
+    rows[:number] = root_weights[:, None] * rigid.reshape(-1, COMPONENTS)
     left, singular_values, right = np.linalg.svd(rows, full_matrices=False)
     shown = singular_values > _INDETERMINATE * singular_values[0]
-    # the motion at the node of a rigid motion about the mean
+    # the motion at the node of a rigid motion about the mean: u + theta x (-mean arm)
     at_node = np.eye(COMPONENTS)
     at_node[:AXES, AXES:] = rotation_columns(*(-mean_arm / unit)[:, None])[0]
-    fit = (
-        at_node
-        @ (right[shown].T / singular_values[shown])
-        @ left[: len(root_weights), shown].T
-        * root_weights
-    )
+    inverse = right[shown].T / singular_values[shown]
+    fit = at_node @ inverse @ left[:number, shown].T * root_weights
     indeterminate = at_node @ right[~shown].T
     indeterminate[np.abs(indeterminate) < _NO_COEFFICIENT * np.abs(at_node).max()] = 0.0
     # rotations are per unit of length again
@@ -342,7 +357,9 @@ def equation_of(line: TextLine, terms: Sequence[tuple[Free, float]]) -> Equation
     for free, coefficient in terms:
         coefficients[free] = coefficients.get(free, 0.0) + coefficient
     nonzero = [(free, coefficient) for free, coefficient in coefficients.items() if coefficient]
-    return None if len(nonzero) == 1 or not terms else Equation(line, nonzero)
+    if len(nonzero) == 1 or not terms:
+        return None
+    return Equation(line, nonzero)
 
 
 def _nodes_of(link: Link) -> list[int]:

@@ -72,7 +72,9 @@ def load_mesh(
         mesh = with_element_materials(mesh, unit_in_metres, materials)
     if contact is not None:
         mesh = part_at(mesh, *contact)
-    return mesh if materials else with_element_materials(mesh, unit_in_metres)
+    if not materials:
+        mesh = with_element_materials(mesh, unit_in_metres)
+    return mesh
 
 
 def mesh_of_file(

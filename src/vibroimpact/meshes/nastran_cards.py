@@ -35,7 +35,9 @@ def nastran_include(text: str) -> str | None:
     'mesh/plate.bdf'
     """
     # most lines are sorted out without the slower pattern
-    statement = _INCLUDE.fullmatch(text) if "NCLUDE" in text[:40].upper() else None
+    if "NCLUDE" not in text[:40].upper():
+        return None
+    statement = _INCLUDE.fullmatch(text)
     if statement is None:
         return None
     return next(name for name in statement.groups() if name)
@@ -193,11 +195,15 @@ def _split(text: str) -> tuple[str, list[str], str]:
     """
     if "," in text:
         head, *fields = (field.strip() for field in text.split(","))
-        width = 4 if "*" in head else 8
-        if len(fields) == width + 1:
-            return head, fields[:width], fields[width]
-        return head, fields + [""] * (width - len(fields)), ""
+        number = 4 if "*" in head else 8
+        if len(fields) == number + 1:
+            return head, fields[:number], fields[number]
+        padding = [""] * (number - len(fields))
+        return head, fields + padding, ""
+    # columns 1 to 8, 9 to 72 and 73 to 80
     head = text[:8].strip()
-    size = 16 if "*" in head else 8
-    fields = [text[start : start + size].strip() for start in range(8, 72, size)]
+    width = 16 if "*" in head else 8
+    fields = []
+    for start in range(8, 72, width):
+        fields.append(text[start : start + width].strip())
     return head, fields, text[72:80].strip()

@@ -160,7 +160,9 @@ class NastranGrids:
 
     def _basic(self, grid: _Grid, depth: int) -> tuple[float, float, float]:
         """Return the coordinates of a grid point in the basic system."""
-        system = self._default_system if grid.system is None else grid.system
+        system = grid.system
+        if system is None:
+            system = self._default_system
         if system == 0:
             return grid.point
         x, y, z = self._system(system, grid.line, depth).basic(grid.point).tolist()
@@ -191,6 +193,7 @@ class NastranGrids:
         else:
             reference = self._system(definition.reference, definition.line, depth + 1)
             points = np.array([reference.basic(point) for point in definition.points])
+        # the origin, a point of the axis z, and one of the plane x z
         origin = points[0]
         axis = points[1] - origin
         in_plane = points[2] - origin
@@ -218,4 +221,6 @@ class NastranGrids:
 
 def _number(text: str, line: TextLine) -> int:
     """Return the number of a coordinate system; the basic one, 0, for a blank field."""
-    return parse_integer(text, line, "the number of a coordinate system") if text else 0
+    if not text:
+        return 0
+    return parse_integer(text, line, "the number of a coordinate system")

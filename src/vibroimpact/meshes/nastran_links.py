@@ -86,12 +86,15 @@ class NastranLinks:
         for card in self._cards:
             if card.name == "MPCADD":
                 numbers = [parse_integer(field, card.line, _SET) for field in card.fields if field]
-                members_of_sums[numbers[0] if numbers else 0] = set(numbers[1:])
+                number_of_sum = numbers[0] if numbers else 0
+                members_of_sums[number_of_sum] = set(numbers[1:])
             elif card.name == "MPC":
                 stated.add(_integer(card, 0, _SET))
         requested = self._requested_sets
         if not self._has_case_control:
-            requested = set(members_of_sums) if len(members_of_sums) == 1 else stated
+            requested = stated
+            if len(members_of_sums) == 1:
+                requested = set(members_of_sums)
         if len(requested) != 1:  # subcases that differ, or a file that leaves it open
             return set()
         (number,) = requested
@@ -173,10 +176,10 @@ def _rbe1(card: Card) -> Rigid | None:
     pairs = [entry for entry in entries if entry != "UM"]
     if "UM" not in entries or len(pairs) % 2:
         return None
-    members = [
-        (parse_integer(node, card.line, _NODE), _components(card, digits))
-        for node, digits in zip(pairs[::2], pairs[1::2], strict=True)
-    ]
+    members = []
+    for node, digits in zip(pairs[::2], pairs[1::2], strict=True):
+        number = parse_integer(node, card.line, _NODE)
+        members.append((number, _components(card, digits)))
     leading = entries.index("UM") // 2
     return _rigid(card, members[:leading], members[leading:])
 
@@ -197,20 +200,24 @@ def _of_ends(card: Card, count: int) -> Rigid | None:
     The card has their numbers, the components of each that lead, and those that follow; if the
     latter are blank, all others follow.
     """
-    fields = [*card.fields, *[""] * (2 * _FIELDS)]
+    padding = [""] * (2 * _FIELDS)
+    fields = [*card.fields, *padding]
     nodes = [_integer(card, 1 + index, _NODE) for index in range(count)]
     first_leading = 1 + count
-    # of a plate the components that follow are in a line of their own
-    first_following = 1 + 2 * count if count == 2 else _FIELDS
-    leading = [_components(card, text) for text in fields[first_leading:][:count]]
-    following = [_components(card, text) for text in fields[first_following:][:count]]
+    first_following = 1 + 2 * count
+    if count == 3:  # of a plate the components that follow are in a line of their own
+        first_following = _FIELDS
+    leading_fields = fields[first_leading : first_leading + count]
+    following_fields = fields[first_following : first_following + count]
+    leading = [_components(card, text) for text in leading_fields]
+    following = [_components(card, text) for text in following_fields]
     if not any(leading):
         leading[0] = _ALL
     if not any(following):
         following = [tuple(set(_ALL) - set(components)) for components in leading]
-    return _rigid(
-        card, list(zip(nodes, leading, strict=True)), list(zip(nodes, following, strict=True))
-    )
+    leading_members = list(zip(nodes, leading, strict=True))
+    following_members = list(zip(nodes, following, strict=True))
+    return _rigid(card, leading_members, following_members)
 
 
 def _rigid(card: Card, leading: Members, following: Members) -> Rigid | None:
@@ -301,5 +308,7 @@ def _components(card: Card, text: str) -> tuple[int, ...]:
 
 def _integer(card: Card, index: int, what: str) -> int:
     """Return the whole number in a field of a card."""
-    text = card.fields[index] if index < len(card.fields) else ""
+    text = ""
+    if index < len(card.fields):
+        text = card.fields[index]
     return parse_integer(text, card.line, what)

@@ -56,9 +56,13 @@ class NastranMaterials:
             number = parse_integer(fields[0], line, _MATERIAL)
             self._others[number] = StatedMaterial(f"MID{number}", other=_OTHERS[card.name])
         elif card.name in ("PSOLID", "PLSOLID"):
-            material = parse_integer(fields[1], line, _MATERIAL) if fields[1] else None
-            fluid = FLUID if fields[6].upper() in _FLUID_FUNCTIONS else ""
-            self._properties[parse_integer(fields[0], line, _PROPERTY)] = (material, fluid)
+            material = None
+            if fields[1]:
+                material = parse_integer(fields[1], line, _MATERIAL)
+            is_fluid = fields[6].upper() in _FLUID_FUNCTIONS
+            fluid = FLUID if is_fluid else ""
+            number = parse_integer(fields[0], line, _PROPERTY)
+            self._properties[number] = (material, fluid)
         elif card.name in _COMPOSITES:
             number = parse_integer(fields[0], line, _PROPERTY)
             self._properties[number] = (None, "a layered composite")

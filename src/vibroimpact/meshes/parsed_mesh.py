@@ -97,7 +97,9 @@ class Parts:
 
     def written(self, number: int) -> int:
         """Return the number of a node or an element as the file has it, for messages."""
-        return number if self.span is None else number % self.span
+        if self.span is None:
+            return number
+        return number % self.span
 
     def add_node(self, line: TextLine, number: int, point: tuple[float, float, float]) -> None:
         """Add a node.
@@ -336,7 +338,9 @@ class Parts:
     def _nodes_of(self, kind: str) -> Integers:
         """Return the numbers of the nodes of the elements of a kind, in our node order."""
         nodes = np.array(self._elements[kind].nodes, dtype=np.int64)
-        return nodes[:, to_ours(kind, self.orders[kind])] if kind in self.orders else nodes
+        if kind not in self.orders:
+            return nodes
+        return nodes[:, to_ours(kind, self.orders[kind])]
 
     def _connectivity(self, kind: str, nodes: Integers, numbers: Integers) -> Integers:
         """Return the nodes of the elements of a kind as indices into `numbers`.

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from vibroimpact.errors import did_you_mean
 from vibroimpact.meshes.abaqus_assembly import SPAN, flattened, is_assembly
-from vibroimpact.meshes.abaqus_blocks import Block, abaqus_include, blocks
+from vibroimpact.meshes.abaqus_blocks import Block, abaqus_include, blocks, real_or_zero
 from vibroimpact.meshes.abaqus_links import AbaqusLinks
 from vibroimpact.meshes.abaqus_materials import AbaqusMaterials
 from vibroimpact.meshes.left_out import remarks_of
@@ -19,7 +19,6 @@ from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import (
     TextLine,
     parse_integer,
-    parse_real,
     read_lines_with_includes,
 )
 from vibroimpact.quoting import quoted
@@ -159,7 +158,9 @@ class _Reader:
 
     def _selection(self, kind: str, name: str) -> Selection:
         """Return the set of a name, ignoring case."""
-        sets = self.parts.node_sets if kind == "NSET" else self.parts.element_sets
+        sets = self.parts.element_sets
+        if kind == "NSET":
+            sets = self.parts.node_sets
         return sets[self.names.setdefault((kind, name.upper()), name)]
 
     def _nodes(self, block: Block) -> None:
@@ -169,7 +170,9 @@ class _Reader:
                 "the nodes are in cylindrical or spherical coordinates; only SYSTEM=R is read"
             )
         name = block.parameters.get("NSET")
-        chosen = self._selection("NSET", name) if name else Selection()
+        chosen = Selection()
+        if name:
+            chosen = self._selection("NSET", name)
         for line in block.data:
             texts = line.text.split(",")
             if len(texts) < 2:
@@ -178,10 +181,8 @@ class _Reader:
                     "coordinates, with commas between them"
                 )
             number = parse_integer(texts[0], line, "the number of a node")
-            x, y, z = (
-                parse_real(text, line) if text.strip() else 0.0
-                for text in [*texts[1:4], "", ""][:3]
-            )
+            coordinates = [*texts[1:4], "", ""][:3]
+            x, y, z = (real_or_zero(text, line) for text in coordinates)
             self.parts.add_node(line, number, (x, y, z))
             chosen.numbers.add(number)
 
@@ -194,7 +195,9 @@ class _Reader:
             return
         kind = _KINDS[solid[1]]
         name = block.parameters.get("ELSET")
-        chosen = self._selection("ELSET", name) if name else Selection()
+        chosen = Selection()
+        if name:
+            chosen = self._selection("ELSET", name)
         entries = 1 + len(ELEMENT_KINDS[kind].reference)  # number and nodes
         # the entries of an element are collected over its continuation lines
         numbers: list[int] = []
@@ -338,8 +341,9 @@ def _check_readable(block: Block) -> None:
 def _range(texts: list[str], line: TextLine) -> tuple[int, int, int]:
     """Return the first, the last and the step of a range."""
     numbers = [parse_integer(text, line, "the bound of a range") for text in texts]
-    first, last, step = [*numbers, 1][:3] if len(numbers) in (2, 3) else (1, 0, 1)
-    if last < first or step < 1:
+    is_complete = len(numbers) in (2, 3)
+    first, last, step = [*numbers, 1, 1, 1][:3]
+    if not is_complete or last < first or step < 1:
         raise line.wrong(
             "GENERATE needs first and last, and may have a step; last must be at least "
             "first, and step at least 1"

@@ -269,7 +269,11 @@ class _Reader:
                 "tetrahedra, prisms, pyramids or bricks"
             )
         solid = _SOLIDS.get(gmsh_type)
-        dimension, count = (3, len(ELEMENT_KINDS[solid].reference)) if solid else _SKINS[gmsh_type]
+        if solid:
+            dimension = 3
+            count = len(ELEMENT_KINDS[solid].reference)
+        else:
+            dimension, count = _SKINS[gmsh_type]
         if len(texts) != count:
             raise line.wrong(
                 f"the element has {len(texts)} nodes; its type {gmsh_type} must have {count}"

@@ -147,9 +147,12 @@ def _read_solid(card: Card, parts: Parts) -> None:
     """Read a solid element, of which nodes in the middle of edges may be blank."""
     line, name, fields = card
     number = parse_integer(fields[0], line, "the number of an element")
-    nodes = [
-        parse_integer(field, line, "the number of a node") if field else 0 for field in fields[2:]
-    ]
+    nodes = []  # zero where one is left out
+    for field in fields[2:]:
+        node = 0
+        if field:
+            node = parse_integer(field, line, "the number of a node")
+        nodes.append(node)
     while nodes and nodes[-1] == 0:
         nodes.pop()
     kinds = _KINDS[name]
@@ -163,7 +166,9 @@ def _read_solid(card: Card, parts: Parts) -> None:
     count = corners if len(nodes) == corners else with_edges
     nodes += [0] * (count - len(nodes))
     parts.add_element(line, kinds[count], number, [node or OMITTED for node in nodes])
-    pid = parse_integer(fields[1], line, "the number of a property") if fields[1] else number
+    pid = number
+    if fields[1]:
+        pid = parse_integer(fields[1], line, "the number of a property")
     parts.element_sets[f"PID{pid}"].numbers.add(number)
 
 
@@ -196,14 +201,18 @@ def _read_sets(lines: Iterable[TextLine], parts: Parts) -> None:
             parts.node_sets[names.get(number, f"SET{number}")].update(chosen)
 
 
+def _whole_number(entry: str) -> int:
+    """Return the number of an entry; -1 if it is none, or too large for 64 bits."""
+    if entry.isascii() and entry.isdigit() and len(entry) <= 18:
+        return int(entry)
+    return -1
+
+
 def _selection(entries: Sequence[str]) -> Selection | None:
     """Return the selection of a list such as "1 5 THRU 10"; None if it has other entries."""
     selection = Selection()
     entries = [entry.upper() for entry in entries]
-    numbers = [
-        int(entry) if entry.isascii() and entry.isdigit() and len(entry) <= 18 else -1
-        for entry in entries
-    ]
+    numbers = [_whole_number(entry) for entry in entries]
     index = 0
     while index < len(entries):
         number = numbers[index]

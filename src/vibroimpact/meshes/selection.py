@@ -48,18 +48,21 @@ class Selection:
     def _in_ranges(self, known: Integers) -> Bools:
         """Return which of some numbers, sorted, the ranges select."""
         ranges = np.array(list(self.ranges), dtype=np.int64)
-        starts = np.searchsorted(known, ranges[:, 0])
-        stops = np.searchsorted(known, ranges[:, 1], side="right")
+        first, last, step = ranges.T
+        starts = np.searchsorted(known, first)
+        stops = np.searchsorted(known, last, side="right")
         # ranges of step 1 by the cumulative sum of their starts and ends: thousands cost as much as
         # one
-        has_unit_step = ranges[:, 2] == 1
-        begun = np.bincount(starts[has_unit_step], minlength=len(known) + 1)
-        ended = np.bincount(stops[has_unit_step], minlength=len(known) + 1)
-        is_selected = np.cumsum((begun - ended)[:-1]) > 0
+        has_unit_step = step == 1
+        number = len(known) + 1
+        begun = np.bincount(starts[has_unit_step], minlength=number)
+        ended = np.bincount(stops[has_unit_step], minlength=number)
+        open_ranges = np.cumsum(begun - ended)[:-1]
+        is_selected = open_ranges > 0
         for index in np.flatnonzero(~has_unit_step).tolist():
-            first, _, step = ranges[index].tolist()
             within = slice(starts[index], stops[index])
-            is_selected[within] |= (known[within] - first) % step == 0
+            steps_from_first = known[within] - first[index]
+            is_selected[within] |= steps_from_first % step[index] == 0
         return is_selected
 
     def update(self, other: Selection) -> None:

@@ -99,14 +99,15 @@ def tied_nodes(
     """
     result = TiedNodes([], mesh.nodes.copy(), [])
     is_tied = np.zeros(len(mesh.nodes), dtype=bool)
-    rounding = _MOVED * float(mesh.extent.max()) if ties else 0.0
+    rounding = 0.0
+    if ties:
+        rounding = _MOVED * float(mesh.extent.max())
     for tie in ties:
         names = " to ".join(quoted(name)[1:-1] for name in tie.names)
         leader = _faces(mesh, tie.leader, elements)
         follower = _faces(mesh, tie.follower, elements)
-        followers = np.union1d(_nodes_of(follower), tie.follower.nodes.places(numbers)).astype(
-            np.int64
-        )
+        follower_nodes = tie.follower.nodes.places(numbers)
+        followers = np.union1d(_nodes_of(follower), follower_nodes).astype(np.int64)
         followers = np.setdiff1d(followers[~is_tied[followers]], _nodes_of(leader))
         if not leader or not len(followers):
             result.remarks.append(
@@ -116,7 +117,9 @@ def tied_nodes(
             )
             continue
         edge = _mean_edge(mesh, leader)
-        reach = _REACH * edge if tie.reach is None else max(tie.reach, rounding)
+        reach = _REACH * edge
+        if tie.reach is not None:
+            reach = max(tie.reach, rounding)
         if follower and _mean_edge(mesh, follower) > _COARSER * edge:
             result.remarks.append(
                 f"of the surfaces that the mesh file ties, {names}, the first is the "
@@ -140,10 +143,12 @@ def _equations(line: TextLine, node: int, place: NearestPlace, numbers: Integers
         for face_node, weight in zip(place.nodes, place.weights, strict=True)
         if abs(weight) > _LEAST
     ]
+    # u - sum of w_k u_k = 0
+    tied_node = int(numbers[node])
     equations = []
     for axis in range(AXES):
         followed = [((face_node, axis), weight) for face_node, weight in weights]
-        equations.append(Equation(line, [((int(numbers[node]), axis), 1.0), *followed]))
+        equations.append(Equation(line, [((tied_node, axis), 1.0), *followed]))
     return equations
 
 

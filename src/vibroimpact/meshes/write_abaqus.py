@@ -99,7 +99,9 @@ def _material_names(deck: DeckMesh) -> dict[int, str]:
     names: dict[int, str] = {}
     for number, material in deck.materials.items():
         name = _quoted(material.name or "material")
-        names[number] = f"material-{number + 1}" if name in names.values() else name
+        if name in names.values():
+            name = f"material-{number + 1}"
+        names[number] = name
     return names
 
 
@@ -128,7 +130,9 @@ def _section_lines(deck: DeckMesh, names: dict[int, str], thickness: float | Non
     for (family, material), elements in sections.items():
         if material not in names or (family == "SHELLS" and thickness is None):
             continue
-        label = family if material < 0 else f"{family}-{material + 1}"
+        label = family
+        if material >= 0:
+            label = f"{family}-{material + 1}"
         yield f"*ELSET, ELSET={label}, GENERATE"
         # runs of consecutive numbers
         for run in np.split(elements, np.flatnonzero(np.diff(elements) != 1) + 1):
@@ -141,8 +145,9 @@ def _section_lines(deck: DeckMesh, names: dict[int, str], thickness: float | Non
 def _data_lines(numbers: Sequence[int]) -> Iterator[str]:
     """Yield the data lines of a list of numbers; a comma at the end of one says that it goes on."""
     for start in range(0, len(numbers), _ENTRIES_OF_LINE):
-        end = "," if start + _ENTRIES_OF_LINE < len(numbers) else ""
-        yield ", ".join(map(str, numbers[start : start + _ENTRIES_OF_LINE])) + end
+        stop = start + _ENTRIES_OF_LINE
+        end = "," if stop < len(numbers) else ""
+        yield ", ".join(map(str, numbers[start:stop])) + end
 
 
 def _quoted(name: str) -> str:

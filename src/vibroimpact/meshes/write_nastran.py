@@ -99,7 +99,9 @@ def write_nastran(
 
 def _property_of_solids(material: int) -> int:
     """Return the number of the property of solids of a material, and of this material."""
-    return _SOLIDS if material < 0 else _FIRST_OF_MATERIALS + material
+    if material < 0:
+        return _SOLIDS
+    return _FIRST_OF_MATERIALS + material
 
 
 def _property_cards(deck: DeckMesh, thickness: float | None) -> Iterator[str]:
@@ -127,7 +129,9 @@ def _element_cards(deck: DeckMesh) -> Iterator[str]:
         for nodes in connectivity.tolist():
             material = int(deck.element_materials[number])
             number += 1
-            own_property = _SHELLS if shape == "quad8" else _property_of_solids(material)
+            own_property = _property_of_solids(material)
+            if shape == "quad8":
+                own_property = _SHELLS
             yield from _card(_CARDS[shape], [number, own_property, *nodes])
 
 
@@ -167,7 +171,9 @@ def _in_nastran_style(text: str) -> str:
         mantissa = mantissa[:-1]
     if mantissa.startswith("0.") and mantissa != "0.":
         mantissa = mantissa[1:]
-    return sign + mantissa + (f"{int(exponent):+d}" if exponent else "")
+    if exponent:
+        mantissa += f"{int(exponent):+d}"
+    return sign + mantissa
 
 
 def _card(name: str, numbers: Sequence[int]) -> Iterator[str]:
@@ -185,7 +191,10 @@ def _constraint(equation: Sequence[tuple[int, int, float]]) -> Iterator[str]:
             f"{node:16d}{axis:16d}{nastran_number(coefficient):>16}"
             for node, axis, coefficient in equation[start : start + 2]
         ]
-        yield f"MPC*    {_JOINTS:16d}{terms[0]}" if start == 0 else f"*       {'':16}{terms[0]}"
+        if start == 0:
+            yield f"MPC*    {_JOINTS:16d}{terms[0]}"
+        else:
+            yield f"*       {'':16}{terms[0]}"
         yield f"*       {terms[1]}" if len(terms) > 1 else "*"
 
 
@@ -195,9 +204,12 @@ def _set(number: int, nodes: Integers) -> Iterator[str]:
     Runs of more than two consecutive numbers are written as ranges (THRU).
     """
     runs = np.split(nodes, np.flatnonzero(np.diff(nodes) != 1) + 1)
-    items = [
-        f"{run[0]} THRU {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs
-    ]
+    items = []
+    for run in runs:
+        item = ", ".join(map(str, run))
+        if len(run) > 2:
+            item = f"{run[0]} THRU {run[-1]}"
+        items.append(item)
     for start in range(0, len(items), 3):
         label = f"SET {number} = " if start == 0 else "    "
         end = "" if start + 3 >= len(items) else ","

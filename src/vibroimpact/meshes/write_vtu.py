@@ -180,7 +180,9 @@ def _array(name: str, values: NDArray[np.generic]) -> str:
     raw = values.astype(values.dtype.newbyteorder("<")).tobytes()
     text = base64.b64encode(len(raw).to_bytes(8, "little") + raw).decode("ascii")
     label = quoteattr("".join(letter for letter in name if letter.isprintable()))
-    components = f' NumberOfComponents="{values.shape[1]}"' if values.ndim == 2 else ""
+    components = ""
+    if values.ndim == 2:
+        components = f' NumberOfComponents="{values.shape[1]}"'
     return (
         f'<DataArray type="{_TYPES[values.dtype.name]}" Name={label}{components} '
         f'format="binary">{text}</DataArray>'
