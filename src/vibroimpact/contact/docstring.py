@@ -70,12 +70,16 @@ def _entry(name: str, item: dataclasses.Field[Any]) -> str:
     else:
         default = f", default {item.default:g}"
     label = "State: " if metadata["memory"] else ""
-    unit = f"In {metadata['unit']}" if metadata["unit"] else "Dimensionless"
+    values = "Dimensionless"
+    if metadata["unit"]:
+        values = f"In {metadata['unit']}"
     allowed = metadata["range"].words
+    if allowed:
+        values += f", {allowed}"
     return "\n".join(
         [
             f"{name} : float or array{default}",
             f"    {label}{metadata['detail']}",
-            f"    {unit}, {allowed}." if allowed else f"    {unit}.",
+            f"    {values}.",
         ]
     )

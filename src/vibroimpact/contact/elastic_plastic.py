@@ -99,7 +99,7 @@ def law_functions(curve: LoadingCurve) -> LawFunctions:
             recovery > 0.0, recovery, 1.0
         )
         elastic_energy = full_elastic_energy * power(fraction, exponent + 1.0)
-        # below the largest indentation nothing yields
+        # static work is stored or plastic; below the largest indentation nothing yields
         plastic_work = work - full_elastic_energy - plastic_loss
         return elastic_energy, where(delta > loaded_to, plastic_work, 0.0)
 

@@ -99,7 +99,9 @@ class ContactLaw(Parameters):
 
         `law_achieving` varies it.
         """
-        return "restitution" if getattr(self, "restitution", None) is not None else None
+        if getattr(self, "restitution", None) is None:
+            return None
+        return "restitution"
 
     @property
     def nominal_restitution(self) -> Array:
@@ -248,7 +250,9 @@ class CompliantLaw(ContactLaw):
 
     def plastic_work(self, delta: Array) -> Array:
         """Return the plastic work from the present state to the indentation `delta` [J]."""
-        return self._energies(delta)[1] if self.yields else np.zeros_like(delta)
+        if not self.yields:
+            return np.zeros_like(delta)
+        return self._energies(delta)[1]
 
     def _energies(self, delta: Array) -> tuple[Array, Array]:
         array_energies = type(self)._array_energies

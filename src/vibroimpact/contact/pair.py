@@ -128,4 +128,6 @@ class ContactPair:
 
         It is 1.6 times the yield strength (Johnson 1985, eq. 6.9).
         """
-        return None if self.yield_strength is None else 1.6 * self.yield_strength
+        if self.yield_strength is None:
+            return None
+        return 1.6 * self.yield_strength

@@ -92,11 +92,12 @@ def inherited_parameter(
         The new range; left out, the range is kept.
     """
     item = base.__dataclass_fields__[name]
-    changes = {
-        "detail": detail or item.metadata["detail"],
-        "range": Range(**bounds) if bounds else item.metadata["range"],
-    }
-    return dataclasses.field(default=item.default, metadata={**item.metadata, **changes})
+    metadata = dict(item.metadata)
+    if detail:
+        metadata["detail"] = detail
+    if bounds:
+        metadata["range"] = Range(**bounds)
+    return dataclasses.field(default=item.default, metadata=metadata)
 
 
 def _metadata(

@@ -89,8 +89,11 @@ def _loaded(point: EntryPoint, kind: str, base: type[Law]) -> type[Law]:
         for attribute in ("name", "equation", "source")
         if not isinstance(getattr(law, attribute, None), str)
     ]
-    if not _is_law(law, base) or missing:
-        lacks = f"; it has no {', '.join(missing)}" if _is_law(law, base) else ""
+    is_law = _is_law(law, base)
+    if not is_law or missing:
+        lacks = ""
+        if is_law:
+            lacks = f"; it has no {', '.join(missing)}"
         raise InputError(
             f'the entry point "{point.name}", {point.value}, is not a {kind} with name, '
             f"equation and source{lacks}"

@@ -116,12 +116,14 @@ def _interpolated_fraction(
     """
     a, b, c = points
     f_a, f_b, f_c = values
+    # Chandrupatla: the inverse quadratic through the three points is monotonic between the ends
     xi = (a - b) / (c - b)
     phi = (f_a - f_b) / (f_c - f_b)
-    # the inverse quadratic through the three points is monotonic between the ends
     is_monotonic = (phi * phi < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
-    fraction = f_a / (f_b - f_a) * f_c / (f_b - f_c)
-    fraction += (c - a) / (b - a) * f_a / (f_c - f_a) * f_b / (f_c - f_b)
+    # its argument at zero, less a and over b - a, by Lagrange's formula
+    by_opposite = f_a / (f_b - f_a) * f_c / (f_b - f_c)
+    by_previous = (c - a) / (b - a) * f_a / (f_c - f_a) * f_b / (f_c - f_b)
+    fraction = by_opposite + by_previous
     edge = np.minimum(final_width, 0.5)
     interpolated = np.clip(fraction, edge, 1.0 - edge)
     return np.where(is_monotonic & np.isfinite(fraction), interpolated, 0.5)
@@ -209,6 +211,7 @@ def solve_monotonic(
     low = np.where(has_no_bracket, start, low)
     high = np.where(has_no_bracket, start, high)
     root = find_root(lambda argument: function(argument) - wanted, low, high, close=_RESIDUAL)
+    # at a jump the bracket closes on a place where the function is not near the wanted value
     is_discontinuous = ~(np.abs(function(root) - wanted) <= _JUMP)
     return MonotonicRoots(np.where(has_no_bracket | is_discontinuous, np.nan, root), least, most)
 
@@ -219,5 +222,6 @@ def _trials(start: Array, allowed: Range, max_steps: int) -> Iterator[Array]:
         if np.isfinite(end):
             yield allowed.clip(end + 0.0 * start)
     for count in range(max_steps):
-        for power in (-count, count) if count else (0,):
+        powers = (-count, count) if count else (0,)
+        for power in powers:
             yield allowed.clip(start * 4.0**power)

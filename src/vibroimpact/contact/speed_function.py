@@ -136,9 +136,12 @@ def toml_of(function: BySpeed) -> str:
     """
 
     def text(value: Any) -> str:
-        return f"[{', '.join(map(text, value))}]" if isinstance(value, list) else f"{value:.9g}"
+        if isinstance(value, list):
+            return f"[{', '.join(map(text, value))}]"
+        return f"{value:.9g}"
 
-    return f"{{ {', '.join(f'{key} = {text(value)}' for key, value in function.table().items())} }}"
+    entries = [f"{key} = {text(value)}" for key, value in function.table().items()]
+    return f"{{ {', '.join(entries)} }}"
 
 
 BySpeed: TypeAlias = SpeedFunction | SpeedTable

@@ -109,9 +109,9 @@ class HuntCrossley(HystereticLaw):
         """Return the damping factor of an impact [-]: D(e), or the dissipation times the
         approach speed [m/s].
         """
-        return (
-            self.damping_factor if self.dissipation is None else self.dissipation * approach_speed
-        )
+        if self.dissipation is None:
+            return self.damping_factor
+        return self.dissipation * approach_speed
 
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:

@@ -117,8 +117,12 @@ class WaltonBraun(ElasticPlasticLaw):
 
         Where they are not given, the second is one, and the third zero.
         """
-        squared_restitution = 1.0 if self.restitution is None else self.restitution**2
-        stiffening = 0.0 if self.stiffening is None else self.stiffening
+        squared_restitution: Array = 1.0
+        if self.restitution is not None:
+            squared_restitution = self.restitution**2
+        stiffening: Array = 0.0
+        if self.stiffening is not None:
+            stiffening = self.stiffening
         return self.stiffness, squared_restitution, stiffening
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
