@@ -165,6 +165,7 @@ def _elements_across(
     InputError
         If they are too many.
     """
+    # so many per wave length on the radius, k R/(2 pi) wave lengths, and twice as many across
     wave_number = _shear_wave_number(radius, material, reduction) * radius
     ungraded = max(_ACROSS, 2 * math.ceil(_PER_WAVE * wave_number / (2.0 * math.pi)))
     elements = 2 * math.ceil(0.5 * ungraded * math.sqrt(grading))
@@ -232,14 +233,17 @@ def plate_recipe(
 def _plate_element_size(size: tuple[float, float, float], wave_number: float) -> float:
     """Return the side of plate elements that resolve bending waves [m]."""
     resolved = _PLATE_ELEMENT_SIZE * 2.0 * math.pi / wave_number
-    return _rounded(min(resolved, max(size[:2]) / _LEAST_PLATE_ELEMENTS))
+    largest = max(size[:2]) / _LEAST_PLATE_ELEMENTS
+    return _rounded(min(resolved, largest))
 
 
 def _brick_size(size: tuple[float, float, float], wave_number: float, layers: int) -> float:
     """Return the side of bricks that resolve bending waves, unless they are too many [m]."""
     resolved = _BRICK_SIZE * 2.0 * math.pi / wave_number
+    largest = max(size[:2]) / _LEAST_BRICKS
+    # with it the bricks of all layers are as many as may be
     affordable = math.sqrt(size[0] * size[1] * layers / _MOST_BRICKS)
-    return _rounded(max(min(resolved, max(size[:2]) / _LEAST_BRICKS), affordable))
+    return _rounded(max(min(resolved, largest), affordable))
 
 
 def _rounded(length: float) -> float:
@@ -255,7 +259,10 @@ def _choose_layers(
 ) -> None:
     """Set the number of layers and of splits of a mesh of bricks, unless given."""
     is_held_below = any(support.discs or any(support.rims) for support in supports)
-    mesh.setdefault("lower_splits", mesh.get("splits", _LOWER_SPLITS) if is_held_below else 0)
+    lower_splits = 0
+    if is_held_below:
+        lower_splits = mesh.get("splits", _LOWER_SPLITS)
+    mesh.setdefault("lower_splits", lower_splits)
     mesh.setdefault("splits", _RIM_SPLITS)
     needed_layers = 1 + sum(wave_number * size[2] > limit for limit in _LAYERS)
     # splits of the lowest layer are layers too
@@ -318,12 +325,15 @@ def _bending_wave_number(
         support.edge: support.condition for support in supports if isinstance(support, Edge)
     }
     # -c P, summed over the held edges
-    edge_sum = -sum(
-        OF_AN_EDGE[condition] * (width if edge[0] == "x" else length)
-        for edge, condition in conditions.items()
-    )
+    of_edges = []
+    for edge, condition in conditions.items():
+        side = width if edge[0] == "x" else length
+        of_edges.append(OF_AN_EDGE[condition] * side)
+    edge_sum = -sum(of_edges)
     area = length * width
     # the positive root of A k^2 - edge_sum k - 4 pi modes
-    of_plate = (edge_sum + math.sqrt(edge_sum**2 + 16.0 * math.pi * modes * area)) / (2.0 * area)
+    discriminant = edge_sum**2 + 16.0 * math.pi * modes * area
+    of_plate = (edge_sum + math.sqrt(discriminant)) / (2.0 * area)
     # a narrow plate has the modes of a beam
-    return min(of_plate, math.pi * modes / max(length, width))
+    of_beam = math.pi * modes / max(length, width)
+    return min(of_plate, of_beam)

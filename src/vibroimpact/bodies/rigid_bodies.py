@@ -63,7 +63,9 @@ def rigid_sphere(
             f"material must be a Material, as vi.find_material(...) gives it, not {material!r}"
         )
     radius = _as_array(radius)
-    mass = ball_volume(radius) * material.density if mass is None else _as_array(mass)
+    if mass is None:
+        mass = ball_volume(radius) * material.density
+    mass = _as_array(mass)
     if inertia is not None:
         inertia = _inertia(inertia, mass, radius)
     return Body(mass=mass, contact_offset=radius, inertia=inertia)
@@ -71,7 +73,9 @@ def rigid_sphere(
 
 def _as_array(value: Any) -> Any:
     """Return a list or tuple of numbers as an array, and anything else as it is."""
-    return np.asarray(value, dtype=float) if isinstance(value, (list, tuple)) else value
+    if isinstance(value, (list, tuple)):
+        return np.asarray(value, dtype=float)
+    return value
 
 
 def _inertia(inertia: Array | str, mass: Array, radius: Array) -> Array:
