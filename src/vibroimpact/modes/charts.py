@@ -59,31 +59,33 @@ def is_plate(model: ModalModel) -> bool:
 def _chart(name: str, body: BodyModes) -> Chart:
     model = body.model
     number = min(MOST_SHAPES, len(body.model.frequencies))
-    flat = is_plate(model)
-    panels = plate_panels(body, number) if flat else solid_panels(model, number)
-    number = len(panels)
     extent = model.mesh.extent
-    if flat:
+    if is_plate(model):
+        panels = plate_panels(body, number)
+        way = "up"
         size = f"{brief(extent[0], 'm')} \u00d7 {brief(extent[1], 'm')}"
         meaning = "Red is up, blue is down, and the thick line is at rest."
         shape = float(np.clip(extent[1] / extent[0], 0.3, 1.5))
     else:
+        panels = solid_panels(model, number)
+        way = "outwards"
         size = f"{brief(extent.max(), 'm')} large"
         meaning = (
             "Red is outwards, blue is inwards; where it only twists, what is lighter moves "
             "more. Dashed: at rest."
         )
         shape = 1.0
+    number = len(panels)
     columns = min(_COLUMNS, number)
     blank = Panel(panels[0].x, panels[0].y, (), picture=True)
     panels += [blank] * (-number % columns)
     rows = tuple(tuple(panels[start : start + columns]) for start in range(0, len(panels), columns))
-    title = f"Modes of the {name}" if number > 1 else f"The mode of the {name}"
-    way = "up" if flat else "outwards"
     if number > 1:
+        title = f"Modes of the {name}"
         count = f"{number} of {len(model.frequencies)}"
         drawn = f"The first {count} modes, each drawn as large as the others"
     else:
+        title = f"The mode of the {name}"
         drawn = "The lowest mode"
     caption = f"{drawn}; which way is {way} is arbitrary."
     return Chart(

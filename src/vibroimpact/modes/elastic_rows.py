@@ -26,22 +26,23 @@ def elastic_rows(case: Case) -> list[tuple[str, str]]:
             kept = f"{reduction.modes} modes"
         else:
             kept = f"modes up to {reduction.max_frequency:g} Hz"
-        stored = "computed already" if mesh["modes_computed"] else "not computed yet"
+        method: str = reduction.method
+        if reduction.attachment:
+            method += ", with an attachment mode"
+        stored = "not computed yet"
+        if mesh["modes_computed"]:
+            stored = "computed already"
         rows += [
             (
                 f"elastic {name}",
                 f"{mesh['elements']}, {mesh['nodes']} nodes, {mesh['degrees_of_freedom']} "
                 "degrees of freedom before supports",
             ),
-            (
-                "  modes",
-                f"{kept}, "
-                f"{reduction.method}{', with an attachment mode' if reduction.attachment else ''}; "
-                f"{stored}",
-            ),
+            ("  modes", f"{kept}, {method}; {stored}"),
             ("  damping", body.damping.description),
             ("  held by", supports_text(body)),
         ]
-        rows += [("  materials", mesh["materials"])] if mesh["materials"] else []
+        if mesh["materials"]:
+            rows.append(("  materials", mesh["materials"]))
         rows += [("  of the file", remark) for remark in mesh["remarks"]]
     return rows

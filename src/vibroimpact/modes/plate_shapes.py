@@ -124,7 +124,8 @@ def _deformed_grid(grid: SurfaceGrid, displacements: Floats) -> Line:
     """Return lines of a coarse grid, displaced."""
     in_plane = grid.interpolate(np.ascontiguousarray(displacements[:, :2].T))
     longer_side = float(max(np.ptp(grid.x), np.ptp(grid.y)))
-    in_plane *= _DRAWN_DISPLACEMENT * longer_side / np.nanmax(np.abs(in_plane))
+    largest = np.nanmax(np.abs(in_plane))
+    in_plane *= _DRAWN_DISPLACEMENT * longer_side / largest
     deformed = np.stack(np.meshgrid(grid.x, grid.y)) + in_plane  # x and y of the grid points
     step = longer_side / (_LINES - 1)
     # one line after the other, with a gap between them
@@ -141,4 +142,5 @@ def _deformed_grid(grid: SurfaceGrid, displacements: Floats) -> Line:
 def _line_indices(side: Floats, step: float) -> Indices:
     """Return the indices of grid coordinates [m] that are about a step [m] apart."""
     number = 1 + round(float(np.ptp(side)) / step)
-    return np.unique(np.linspace(0, len(side) - 1, number).round().astype(int))
+    evenly = np.linspace(0, len(side) - 1, number)
+    return np.unique(evenly.round().astype(int))

@@ -80,11 +80,14 @@ def report_of(modes: Modes, measured: MeasuredTable | None = None) -> Report:
 def _body(name: str, body: BodyModes) -> Section:
     """Return the facts of a body, and its frequencies."""
     table = mode_table(body)
-    error = '"Within" is the estimated error of a frequency. '
-    has_errors = any(column.heading == "within" for column in table.columns)
-    points = ", their shapes at the sensors in points.csv" if body.body.watched else ""
+    error = ""
+    if any(column.heading == "within" for column in table.columns):
+        error = '"Within" is the estimated error of a frequency. '
+    points = ""
+    if body.body.watched:
+        points = ", their shapes at the sensors in points.csv"
     meaning = Explanation(
-        f"{error if has_errors else ''}The shape at the contact is that of a mode of unit modal "
+        f"{error}The shape at the contact is that of a mode of unit modal "
         f"mass. All modes are in modes.csv{points}."
     )
     blocks = (Warnings(body.doubts), Facts(body_facts(body)), table, meaning)
@@ -124,7 +127,9 @@ def _motion(modes: Modes) -> list[Section]:
         names = [mode["name"] for mode in data["modes"]]
         label = "One period of a mode of the plate"
         blocks.append(Scene(data, label, "One period of a mode, magnified.", names))
-    return [Section("motion", "Plate in motion", blocks, medium="page")] if blocks else []
+    if not blocks:
+        return []
+    return [Section("motion", "Plate in motion", blocks, medium="page")]
 
 
 def _case(modes: Modes) -> Section:

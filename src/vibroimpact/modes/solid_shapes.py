@@ -113,15 +113,18 @@ def _silhouette(corners: Floats) -> tuple[Line, ...]:
 
     is_visible, _ = _visible_facets(corners)
     facets = _projected(corners[is_visible])
-    hull = ConvexHull(facets.reshape(-1, 2))
+    points = facets.reshape(-1, 2)
+    hull = ConvexHull(points)
     # the area of a quadrilateral is half the cross product of its diagonals
-    first_x, first_y = np.moveaxis(facets[:, 2] - facets[:, 0], -1, 0)
-    second_x, second_y = np.moveaxis(facets[:, 3] - facets[:, 1], -1, 0)
-    visible_area = 0.5 * float(np.abs(first_x * second_y - first_y * second_x).sum())
+    first_x, first_y = (facets[:, 2] - facets[:, 0]).T
+    second_x, second_y = (facets[:, 3] - facets[:, 1]).T
+    twice_areas = np.abs(first_x * second_y - first_y * second_x)
+    visible_area = 0.5 * float(twice_areas.sum())
     # the "volume" of a hull in the plane is its area; facets of a body with recesses hide others
     if visible_area > (1.0 + _OVERLAP) * hull.volume:
         return ()
-    x, y = facets.reshape(-1, 2)[np.append(hull.vertices, hull.vertices[0])].T
+    closed = np.append(hull.vertices, hull.vertices[0])
+    x, y = points[closed].T
     return (Line(x, y, role="ghost"),)
 
 

@@ -38,5 +38,6 @@ def _outline(support: Support, mesh: Mesh) -> tuple[Floats, Floats]:
         case RectangularPatch():
             return rectangle(support.x, support.y, support.length, support.width)
         case _:  # a disc: a patch, a bar, a spring; or a point
+            radius = float(getattr(support, "radius", 0.0)) or thin
             x, y = (float(getattr(support, coordinate)) for coordinate in ("x", "y"))
-            return disc(x, y, float(getattr(support, "radius", 0.0)) or thin)
+            return disc(x, y, radius)

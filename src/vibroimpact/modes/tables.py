@@ -20,6 +20,7 @@ ROWS = 20
 """Lowest modes in a table."""
 
 _UNKNOWN = "not known"
+_ROUNDING = 1e-6  # of a reference value: what is less is shown as zero
 
 
 def body_facts(modes: BodyModes) -> list[tuple[str, str]]:
@@ -49,8 +50,11 @@ def mode_table(modes: BodyModes) -> Table:
     """
     basis = modes.basis
     number = len(basis.frequencies)
-    shown = list(range(min(ROWS, number))) + ([number - 1] if number > ROWS else [])
+    shown = list(range(min(ROWS, number)))
+    if number > ROWS:
+        shown.append(number - 1)
     left_out = number - len(shown)
+    gap = Gap(ROWS, left_out) if left_out else None
     effective = basis.participation[:, 2] ** 2
     errors = _error_texts(modes.model.frequency_errors[shown])
     shapes = _fixed_texts(basis.contact[shown], float(np.abs(basis.contact).max()))
@@ -66,7 +70,7 @@ def mode_table(modes: BodyModes) -> Table:
     return Table(
         [column for column in columns if set(column.cells) - {"0", _UNKNOWN}],
         title="Frequencies",
-        gap=Gap(ROWS, left_out) if left_out else None,
+        gap=gap,
         file="modes.csv",
     )
 
@@ -80,14 +84,19 @@ def supports_text(body: ElasticBody) -> str:
 
 def _error_texts(errors: Floats) -> list[str]:
     """Return relative frequency errors in per cent, as text."""
-    return [cell if cell != MISSING else _UNKNOWN for cell in column_texts(100.0 * errors, 2)]
+    cells = column_texts(100.0 * errors, 2)
+    return [_UNKNOWN if cell == MISSING else cell for cell in cells]
 
 
 def _fixed_texts(values: Floats, reference: float) -> list[str]:
     """Return numbers with four decimals, or 0 where they are rounding errors relative to
     a reference value.
     """
-    return [fixed(float(value), 4) if abs(value) > 1e-6 * reference else "0" for value in values]
+    texts = []
+    for value in values:
+        is_rounding = not abs(value) > _ROUNDING * reference
+        texts.append("0" if is_rounding else fixed(float(value), 4))
+    return texts
 
 
 def mode_title(model: ModalModel, mode: int) -> str:
