@@ -123,7 +123,8 @@ def _register_runtime(target_context: Any) -> None:
     """
     try:
         for name, address in _nrt_python.c_helpers.items():
-            ll.add_symbol(name if name.startswith("_") else f"NRT_{name}", address)
+            symbol = name if name.startswith("_") else f"NRT_{name}"
+            ll.add_symbol(symbol, address)
     except Exception:  # of another version of numba
         rtsys.initialize(target_context)
 

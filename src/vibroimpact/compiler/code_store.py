@@ -42,7 +42,9 @@ def code_folder() -> Path:
     from platformdirs import user_cache_path
 
     given = os.environ.get(PLACE)
-    return Path(given) if given else user_cache_path("vibroimpact") / "compiled"
+    if given:
+        return Path(given)
+    return user_cache_path("vibroimpact") / "compiled"
 
 
 def machine_folder(processor: str) -> Path:

@@ -164,7 +164,9 @@ def compress_held(deepest: float, coefficients: Any, changed: Any) -> float:
     law = _held(coefficients).after_compression(deepest)
     for index, memory in enumerate(law.memories().values()):
         changed[1 + index] = float(memory)
-    return max(float(law.touch_level), deepest) if law.memories() else np.inf
+    if not law.memories():
+        return np.inf
+    return max(float(law.touch_level), deepest)
 
 
 def slip_after_of_held(

@@ -116,7 +116,9 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
 
         It is that of its code: code finds it by a name with this number in any process.
         """
-        return self._cache.number if self.is_kept else randbits(BITS)
+        if self.is_kept:
+            return int(self._cache.number)
+        return randbits(BITS)
 
     @property
     def signature_text(self) -> str:
@@ -187,7 +189,11 @@ class LendingFunction(CompiledFunction):
     @cached_property
     def _packings(self) -> list[Packing | None]:
         """How its arguments are packed that are lent to it."""
-        return [Packing(kind.kind) if isinstance(kind, Lent) else None for kind in self._types.args]
+        packings: list[Packing | None] = []
+        for kind in self._types.args:
+            packing = Packing(kind.kind) if isinstance(kind, Lent) else None
+            packings.append(packing)
+        return packings
 
     @cached_property
     def _entry(self) -> Any:
@@ -213,8 +219,9 @@ def compiled_function(function: Callable[..., Any], types: Signature) -> Compile
 
     The parameters are those of `CompiledFunction`.
     """
-    is_lent_to = any(isinstance(kind, Lent) for kind in types.args)
-    return (LendingFunction if is_lent_to else CompiledFunction)(function, types)
+    if any(isinstance(kind, Lent) for kind in types.args):
+        return LendingFunction(function, types)
+    return CompiledFunction(function, types)
 
 
 def _compiled_named(module: str, name: str, inner: bool) -> Any:

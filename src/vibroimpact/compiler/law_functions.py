@@ -34,7 +34,8 @@ def compiled_law_function(law_class: type[Any], kind: str) -> CompiledFunction:
     source = interpreted_function(law_class, kind)
     if source not in _COMPILED:
         missing = law_class.missing_functions()
-        reason = f"it has no {_listed(missing)}" if missing else _why_not_compiled(source, kind)
+        lacks = f"it has no {_listed(missing)}" if missing else ""
+        reason = lacks or _why_not_compiled(source, kind)
         if reason:
             function_type = getattr(types, kind)
             calling = CompiledFunction(_CALLING[kind](source), function_type.signature, nogil=False)
@@ -135,7 +136,9 @@ _CALLING = {
 
 def _listed(names: list[str]) -> str:
     *first, last = [f"`{name}`" for name in names]
-    return f"{', '.join(first)} and {last}" if first else last
+    if not first:
+        return last
+    return f"{', '.join(first)} and {last}"
 
 
 def _first_reason(error: Exception) -> str:

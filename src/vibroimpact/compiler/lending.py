@@ -86,7 +86,10 @@ def has_arrays(kind: Any) -> bool:
 
 def lent_to(signature: Any) -> Any:
     """Return the signature of a function to which tuples with arrays are lent."""
-    arguments = [Lent(kind) if has_arrays(kind) else kind for kind in signature.args]
+    arguments = []
+    for kind in signature.args:
+        argument = Lent(kind) if has_arrays(kind) else kind
+        arguments.append(argument)
     return signature.return_type(*arguments)
 
 
@@ -134,7 +137,9 @@ def _read_member(context: Any, builder: Any, lent: Lent, pointer: Any, name: str
 
 def _load(builder: Any, pointer: Any, index: int, member: Any) -> Any:
     address = cgutils.gep_inbounds(builder, pointer, 0, index)
-    return address if isinstance(member, Lent) else builder.load(address)
+    if isinstance(member, Lent):
+        return address
+    return builder.load(address)
 
 
 def _is_known_at_start(builder: Any, pointer: Any) -> bool:
@@ -200,7 +205,8 @@ class Packing:
         elif isinstance(kind, BaseNamedTuple):
             self._format += _ALIGNED
             for field, member in zip(kind.fields, kind.types, strict=True):
-                self._append(member, f"{name}.{field}" if name else field)
+                path = f"{name}.{field}" if name else field
+                self._append(member, path)
             self._format += _ALIGNED
         else:
             self._numbers.append(name)
