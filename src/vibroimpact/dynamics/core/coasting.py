@@ -84,6 +84,7 @@ def end_of_coasting(system: System, law: Law, manner: Manner, state: State) -> t
     step = max(above / max(-rate, 1e-3 * manner.motion_speed), 1e-6 * manner.span)
     begun = 0.0
     now = state
+    # free motion is followed in equal samples, of which one transition serves all
     for _ in range(_MOST_HORIZONS):
         before = begun
         flight = flight_of(system, step / _SAMPLES)

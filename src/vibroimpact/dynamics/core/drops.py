@@ -205,6 +205,7 @@ def write_touch_gaps(manner: DropManner, drops: Drops, gaps: Vector) -> None:
 def collide_at_once(separation: float, state: Vector, row: Vector) -> int:
     """Let a drop rebound at its touch with a separation speed [m/s], and return its phase then."""
     speed = state[CLOSING]
+    # without duration: all that is lost is kinetic
     lost = 0.5 * state[MASS] * (speed * speed - separation * separation)
     state[GAP] = 0.0
     state[VELOCITY] = separation
@@ -304,6 +305,7 @@ def write_contact(state: Vector, row: Vector, contact: LineContact) -> None:
     row[TIME_OF_INDENTATION] = touch + contact.time_of_deepest
     row[FORCE] = contact.peak_force
     row[TIME_OF_FORCE] = touch + contact.time_of_peak_force
+    # upwards at the largest force, or downwards in free fall
     row[ACCELERATION] = max(contact.peak_force / state[MASS] - gravity, gravity)
     row[COMPRESSION] = contact.time_of_deepest
     row[DAMPED] = contact.end.lost
@@ -423,6 +425,7 @@ def lie_still(state: Vector, time: float, stored: float, sag: float, stored_at_r
     gravity = state[GRAVITY]
     velocity = state[VELOCITY]
     weight = mass * gravity
+    # m v^2/2 + m g z + U now, less U - m g delta at rest
     energy = mass * (0.5 * (velocity * velocity) + gravity * state[GAP]) + stored
     state[REST_TIME] = time
     state[SAG] = sag

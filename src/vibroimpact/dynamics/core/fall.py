@@ -82,6 +82,7 @@ def accelerate(
     """Write the acceleration of a sphere at a velocity into a column (C, .) [m/s^2];
     return the power per mass that drag takes [W/kg].
     """
+    # v' = g - a(v) v/|v|
     speed = size_of(velocity, column)
     drag = drag_of(falling, drop, speed)
     part = drag / max(speed, STILL)

@@ -99,6 +99,7 @@ def dashpot_rate(system: System, state: State) -> float:
 @compiled
 def local_energy(system: System, state: State) -> float:
     """Return the energy in the springs of the massless elements [J]."""
+    # k e^2/2, with the stiffness k = rate/mobility
     energy = 0.0
     for element in range(len(state.local)):
         energy += 0.5 * state.local[element] ** 2 * system.rate[element] / system.mobility[element]
@@ -175,6 +176,7 @@ def lost_in_flight(system: System, before: State, after: State) -> Vector:
     """Return the energy lost between two states of a free motion [J] (n + 1,): in each
     coordinate, and last in the massless elements.
     """
+    # (v^2 + w^2 q^2)/2 before, less that after
     number = len(before.displacement)
     lost = np.zeros(number + 1)
     for coordinate in range(system.rigid, number - system.driven):

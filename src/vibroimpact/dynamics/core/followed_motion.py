@@ -135,6 +135,7 @@ def write_part(
     first, steps : int
         First point, and number of steps.
     """
+    # Chebyshev's points t = L/2 (1 - cos(pi j/n)), with the first two derivatives of t by j
     half = 0.5 * length
     step = math.pi / steps
     aside = _ASIDE * length
@@ -158,7 +159,7 @@ def write_part(
         rows[PACE_SLOPE, target] = step * step * half * math.cos(angle)
         rows[FORCE, target] = max(force, 0.0)
         rows[FORCE_SLOPE, target] = slope
-        # what stops the bodies is the force
+        # what stops the bodies is the force: its integral is m g t - m (v - v_0)
         stopped = rate - motion[1, 0]
         rows[IMPULSE, target] = manner.mass * (manner.gravity * time - stopped)
 

@@ -71,6 +71,7 @@ def contact_histories(
             fastest = max(fastest, abs(rates[first + node]))
             power = (found.force[first + node] - found.static[first + node]) * rates[first + node]
             dissipated[contact] += length * basis.integral[nodes - 1, node] * power
+        # roughness: the last two Legendre coefficients of the force over the largest
         largest = surfaces.mass[contact] * fastest / length
         last = 0.0
         for order in range(nodes):

@@ -100,6 +100,7 @@ def motion_speed(
 
     It is the closing speed, or the speed that gravity adds at a soft touch.
     """
+    # v^2/g is twice the height from which a fall has this speed
     if system.gravity <= 0.0:
         return closing
     weight = system.mass * system.gravity
@@ -128,6 +129,7 @@ def manner_at_touch(
     mass = drop.state[MASS]
     none = np.zeros(len(manner.series))
     law = law_at_touch(manner.addresses, drop.coefficients, none, dashpot_rate(system, state))
+    # Hertz: a contact lasts 2.94 depth/speed
     depth, speed = depth_and_speed(law, manner.contact_end, mass, drop.state[GRAVITY])
     span = 3.0 * (system.mass / mass) ** 0.4 * depth / speed
     speed_of_motion = motion_speed(
@@ -273,6 +275,7 @@ def separates_slower_than(system: System, touch: float, state: State, speed: flo
     """
     if system.driven > 0:
         return False
+    # E(y) of `vibrating.contact_equilibrium` at touch, where the contact stores nothing
     weight = system.mass * system.gravity
     least = -weight * touch - 0.5 * system.compliance * weight * weight
     return bool(mechanical_energy(system, state) < least + 0.5 * system.mass * speed * speed)
@@ -303,6 +306,7 @@ def next_contact(
     parted = time_to_separation(system, state, touch)
     time = np.inf
     in_dent = False
+    # surfaces that still overlap where they are undeformed may meet in the dent before they part
     if dent_release > touch:
         time = next_touch(system, state, dent_release, parted)
         in_dent = time < parted

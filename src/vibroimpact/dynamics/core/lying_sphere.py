@@ -279,6 +279,7 @@ def step_along_line(lying: LyingSphere, row: Vector, longest: float) -> tuple[fl
 @compiled
 def until_events(lying: LyingSphere, row: Vector, state: Vector) -> tuple[float, float]:
     """Return what falls to zero where the slip ends, or begins, and where the spin ends."""
+    # a sphere that rolls begins to slip where g + u exceeds what friction can hold
     slips = length_of(state[2], state[3]) - lying.least
     if row[SLIPS] == 0.0:
         _, _, turn_x, turn_y = turning_forces(lying, row, state)
@@ -452,6 +453,7 @@ def lying_sphere(sphere: RubbedSphere, pressing: float, start: Vector) -> LyingS
 
     `pressing`: gravity along the normal [m/s^2]. `start`: place, s and w (6,).
     """
+    # q = mu g_n m/m_t and u = mu_r g_n m R^2/I, of which m R^2/I = (1 - m_t/m)/(m_t/m)
     share = tangential_mass(sphere) / sphere.mass
     resistance = sphere.rolling_coefficient * pressing * (1.0 - share) / share
     speed = length_of(start[2], start[3])

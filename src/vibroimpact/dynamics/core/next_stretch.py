@@ -56,13 +56,15 @@ def next_stretch(
     no_guess = Nodes(np.zeros(0), np.zeros(0), np.zeros(0))
     given = Event(NO_EVENT, 0.0, length, 0)
     basis = basis_of(bases, time_map)
-    tried = attempt(basis, bodies, manner, beginning, no_guess, np.array([trend]), False, given)
+    trends = np.array([trend])
+    tried = attempt(basis, bodies, manner, beginning, no_guess, trends, False, given)
     if tried.event.kind == NO_EVENT:
         balance = balance_of(basis, bodies, manner, beginning, tried)
         return NextStretch(balance.resolved, tried, balance, time_map, no_event, np.inf)
     # also tried if the stretch is not resolved, as the event may be the only reason
     success, ended, ended_map, seen = up_to_event(bases, bodies, manner, beginning, tried, time_map)
-    balance = balance_of(basis_of(bases, ended_map), bodies, manner, beginning, ended)
+    ended_basis = basis_of(bases, ended_map)
+    balance = balance_of(ended_basis, bodies, manner, beginning, ended)
     if success and balance.resolved:
         return NextStretch(True, ended, balance, ended_map, seen, np.inf)
     balance = balance_of(basis, bodies, manner, beginning, tried)

@@ -158,6 +158,7 @@ def struck_end(oblique: ObliqueDrops, drop: int, state: Vector, row: Vector) -> 
     rubbing = oblique.rubbing
     if rubbing.kind == NO_FRICTION:
         return begun
+    # the normal impulse turns the approach speed into that of separation
     impulse = state[MASS] * (row[APPROACH] + row[SEPARATION])
     sphere = sphere_of(oblique.spheres[drop])
     return struck(rubbing.addresses, oblique.friction[drop], sphere, begun, impulse)
@@ -223,6 +224,7 @@ def end_along(
     row[ALONG + 9] = after.spin_x
     row[ALONG + 10] = after.spin_y
     row[ALONG + 11] = after.spin_z
+    # of the centre: its velocity after, along that before
     speed = length_of(before.velocity_x, before.velocity_y)
     onward = length_of(after.velocity_x, after.velocity_y)
     if speed > 0.0:
@@ -248,5 +250,6 @@ def leaves_dent(oblique: ObliqueDrops, drop: int, deepest: float, state: Vector)
         return False
     here = state_of(oblique.along[drop])
     there = flown(sphere_of(oblique.spheres[drop]), here, flight.touch - flight.start)
+    # Hertz: a^2 = R delta
     distance = length_of(there.x - here.x, there.y - here.y)
     return bool(distance > math.sqrt(state[RADIUS] * deepest))

@@ -34,6 +34,7 @@ def values_between(basis: Basis, values: Vector, others: Vector, x: float) -> tu
 @compiled
 def nodal_value_between(basis: Basis, values: Vector, x: float) -> float:
     """Return the value at x in [0, 1] of a quantity with values at the nodes alone (N,)."""
+    # the weights of interpolation without the start: times the distance of each node from it
     total = 0.0
     value = 0.0
     for node in range(len(values)):

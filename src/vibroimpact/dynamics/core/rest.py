@@ -26,6 +26,7 @@ def is_captured(system: System, law: Law, manner: Manner, state: State, delta: f
     """
     if system.driven > 0:
         return False
+    # the barrier is E(y) of `vibrating.contact_equilibrium` at release
     energy = energy_of_approach(system, state) + static_work(law, delta)
     weight = system.mass * system.gravity
     barrier = (

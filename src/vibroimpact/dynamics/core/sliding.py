@@ -481,7 +481,8 @@ def advance_slipping(
     if not arrives and x - middle < _NEAR * (begun_x - middle):
         after = mended_near_middle(friction, curve, start, end, before, after)
     is_turned = direction * end.pace * after.velocity < end.depth_slope and end.depth > 0.0
-    # the slip ends at the rim, and begins there in the other direction
+    # x falls while it slips: where it rises the slip turns; below the middle all of the contact
+    # slides; the slip ends at the rim, and begins there in the other direction
     leaves = after.front * after.front > end.depth
     if stays or not (is_turned or arrives or leaves):
         return after, np.inf
@@ -504,6 +505,7 @@ def advance_step(
     friction: Friction, curve: Curve, start: NormalState, end: NormalState, state: SlipState
 ) -> SlipState:
     """Return the state at the end of a step, from change to change."""
+    # after each change the rest of the step is a step of its own
     for changes in range(MOST_CHANGES + 1):
         stays = changes == MOST_CHANGES
         if state.direction == 0.0:

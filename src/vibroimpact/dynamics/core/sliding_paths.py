@@ -238,7 +238,7 @@ def follow_slip(
     path : array, shape (3, G)
         Velocity, displacement and integral, known up to the first point.
     """
-    if first == 0:
+    if first == 0:  # from touch on nothing is stretched
         path[FRICTION_FORCE, 0] = 0.0
         if friction.at_rim:
             add_rim(curve, grid[0, 3], 0.0, 0.0)

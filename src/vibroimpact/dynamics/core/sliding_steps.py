@@ -178,6 +178,7 @@ def stick(
 @compiled
 def slide(friction: Friction, start: NormalState, end: NormalState, before: SlipState) -> SlipState:
     """Return the motion at the end of a step in which all of a contact slides."""
+    # |I| is 2/3 D^(3/2) throughout, of which the integral over time is known
     sliding = friction.stiffness * before.direction * (end.swept - start.swept)
     velocity = before.velocity + friction.pull * (end.time - start.time) - sliding
     return moved(friction, start, end, before, velocity, before.direction * end.most)

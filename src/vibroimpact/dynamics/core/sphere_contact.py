@@ -187,6 +187,8 @@ def state_along(
     share : float
         Part of the duration that is over.
     """
+    # the impulse of friction is what gravity does not explain of the motion of the contact point;
+    # it moves the centre, and turns the sphere
     mass = tangential_mass(sphere)
     impulse = mass * (velocity - slip.speed - slip.pull * time)
     moved = mass * (displacement - slip.speed * time - 0.5 * slip.pull * time * time)
@@ -220,6 +222,8 @@ def held_across(slip: FirstSlip, normal: NormalPath, path: Matrix) -> float:
 
     `normal`, `path`: of the contact; see `slide_impulsively`.
     """
+    # backwards from the end: across the slip a velocity decays like the slip itself, without the
+    # part of gravity along it
     taken = 0.0
     remaining = 1.0  # by the end of the slip, of what is there at a point
     for point in range(len(normal.steps) - 1, -1, -1):
@@ -319,6 +323,7 @@ def rolling_change(
     speed = length_of(turning_x, turning_y)
     if sphere.rolling_coefficient == 0.0 or speed == 0.0:
         return 0.0, 0.0, 0.0, 0.0
+    # impulses of the moment over R, and of friction, along w
     share = tangential_mass(sphere) / sphere.mass
     moment = sphere.rolling_coefficient * impulse
     along_x = turning_x / speed

@@ -65,6 +65,7 @@ def twisted(
 
     `begun`: normal force [N], and the spin at the begin [rad/s].
     """
+    # in steps from event to event, as the share of the moment is not smooth there
     load, spin = begun
     twisting = twisting_of(sphere)
     slowing = full_moment(twisting, load) / sphere.inertia

@@ -159,6 +159,8 @@ def under_friction(motions: Motions, friction: Matrix) -> Motion:
     """Return the motion of the surfaces across, with what friction forces at the nodes
     [N] move them.
     """
+    # directions of friction follow the normal contact as further contacts: their columns begin
+    # after its nodes
     free = motions.across
     directions, nodes = friction.shape
     if directions == 0:
@@ -204,6 +206,7 @@ def follow_friction(
 
     The history is followed in some steps from each node to the next.
     """
+    # u - w under the forces of the last iteration
     sphere = sliding.sphere
     along = motions.along
     nodes = len(normal)
@@ -233,6 +236,7 @@ def follow_friction(
         steps_moved[step, 1] = y - last_y
         last_x = x
         last_y = y
+    # Q from the law along that way; the first row is the state at the start
     friction = np.empty((1 + steps, 2))
     slid = np.empty(1 + steps)
     write_row(friction, 0, sphere.force)
@@ -284,6 +288,8 @@ def sliding_part(
             else:
                 own = spins[direction - ROLLING_X, node]
             slip[direction, node] = own + surface[direction, node]
+            # the slip is u' - w', and `surface` -w': friction takes Q (u' - w'), and the surface is
+            # given Q w'
             weight = length * basis.integral[last, node]
             taken += weight * force[direction, node] * slip[direction, node]
             given -= weight * force[direction, node] * surface[direction, node]

@@ -37,6 +37,7 @@ def slowing_spins(sphere: SlidingSphere, friction: Matrix) -> Matrix:
     """Return by how much friction and its moments slow the spins of the sphere at the
     nodes [rad/s^2] (3, N).
     """
+    # -w' = (R Q + M)/I about -y and x, and M/I about z
     nodes = friction.shape[1]
     slowed = np.empty((3, nodes))
     turn = sphere.radius / sphere.inertia
@@ -156,6 +157,7 @@ def spin_imbalance(
     basis: Basis, sphere: SlidingSphere, length: float, force: Matrix, spins: Matrix
 ) -> float:
     """Return the error of the balance of energy of the spins through a stretch [J]."""
+    # I (w_1^2 - w_0^2)/2 as a difference of squares, and the work of friction and its moments
     slowed = slowing_spins(sphere, force)
     nodes = len(basis.time)
     imbalance = 0.0

@@ -46,6 +46,7 @@ def slowing(sphere: SlidingSphere, friction: Matrix) -> Matrix:
     """Return by how much friction and its moments slow the contact point of the sphere at
     the nodes [m/s^2] (2, N).
     """
+    # g - u'' = Q/m_t + R M/I
     directions, nodes = friction.shape
     slowed = np.empty((2, nodes))
     turn = sphere.radius / sphere.inertia
@@ -64,6 +65,7 @@ def sphere_displacements(
     """Return the displacements of the contact point of the sphere from the start to the
     nodes [m] (2, N).
     """
+    # gravity in closed form, friction integrated twice by the rule
     nodes = len(basis.time)
     moved = np.empty((2, nodes))
     for direction in range(2):

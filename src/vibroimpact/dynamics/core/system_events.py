@@ -139,6 +139,7 @@ def write_motion(
                 displacement = before.displacement[index]
                 for other in range(nodes):
                     displacement += length * basis.integral[node, other] * velocities[other, place]
+            # less a fall with constant acceleration, which needs no interpolation
             load = of_contact.load[index]
             fallen = before.displacement[index] + time * (
                 before.velocity[index] + 0.5 * load * time

@@ -411,6 +411,7 @@ def begin_contact(
     """Begin an impact at a contact; `in_dent`: on the dent of the last one."""
     of_contact = system_at(points, contact)
     state = state_at(points, contact, state_now(march))
+    # surfaces that other impacts press together close with a speed that says nothing of what comes
     closing = closing_speed(of_contact, state)
     fastest = 0.0
     for other in range(len(march.phase)):
@@ -430,6 +431,7 @@ def begin_contact(
     march.impact[contact] = add_impact(parts, contact, march.numbers[NOW], closing)
     march.phase[contact] = PUSHING
     march.is_fresh[contact] = True
+    # Hertz: a contact lasts 2.94 depth/speed
     speed = motion_speed(law.addresses, law.coefficients, of_contact, closing)
     energy = 0.5 * points.mass[contact] * speed * speed
     depth = undamped_depth(law.addresses, law.coefficients, law.touch, energy, 0.0) - law.touch
@@ -624,6 +626,7 @@ def go_through_stretch(
     bodies = group.bodies
     manner = manner_of_group(points, march, group, tolerance)
     beginning = beginning_of_group(points, march, group, no_friction)
+    # the map of touch where one of the contacts begins, else that of none
     trend = np.empty(len(group.contacts))
     time_map = 1
     deepest = -math.inf

@@ -309,6 +309,7 @@ def lost_in_microslip(
         if slides and slides_before:
             lost += energy_in_sliding(history, load) - energy_in_sliding(history, load_before)
             continue
+        # the work of friction by the trapezoidal rule, less that while all of the contact slid
         for direction in range(2):
             lost += (
                 0.5

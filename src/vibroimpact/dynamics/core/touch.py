@@ -160,6 +160,7 @@ def time_to_separation(system: System, state: State, level: float) -> float:
             return time
         if never_separates(approach, level, system.gravity):
             return np.inf
+        # in equal samples, of which one transition serves all
         begun = time
         flight = flight_of(system, horizon / _SAMPLES)
         for sample in range(1, _SAMPLES + 1):

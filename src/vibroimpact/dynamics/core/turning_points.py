@@ -116,6 +116,7 @@ def held_at(curve: Curve, direction: float, x: float) -> tuple[float, float]:
     length = deep - direction * (points[below + 1, DISPLACEMENT] - moved)
     share = (x - low + direction * moved) / max(length, _SHORT * deep + _TINY)
     share = min(max(share, 0.0), _MOST_SHARE)  # 0 where all of the contact slides
+    # with c linear in x, H rises by the integral of sqrt(c) dx = 2/3 dx/dc d(c^(3/2))
     slope = (2.0 / 3.0) * length / max(deep, _TINY)
     depth = low + share * deep
     root = math.sqrt(depth)
@@ -126,6 +127,8 @@ def held_at(curve: Curve, direction: float, x: float) -> tuple[float, float]:
     excess = (2.0 / 3.0 - slope) * (cube_high - cube_low) - direction * (
         points[below + 1, INTEGRAL] - pulled
     )
+    # the rest of the change comes in smoothly, as 3 t^2 - 2 t^3 of the share t: with no slope at
+    # either point
     linear = (2.0 / 3.0) * cube_low - direction * pulled + slope * (depth * root - cube_low)
     return linear + excess * share * share * (3.0 - 2.0 * share), root
 

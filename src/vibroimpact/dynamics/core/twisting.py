@@ -85,6 +85,7 @@ def slowed_spin(
     force, friction, slip : float
         At the end; see `moment_share`.
     """
+    # a first estimate by the share at the start, then the mean of those at both ends
     after = max(spin - share * full, 0.0)
     share_after = moment_share(twisting, force, friction, slip, after)
     return 0.5 * (share + share_after) * full, share_after
@@ -120,10 +121,12 @@ def slow_spin(
     moment = full_moment(twisting, force[0])
     spins[0] = spin
     for point in range(1, len(time)):
+        # what full twisting would take, by the trapezoidal rule
         moment_before = moment
         moment = full_moment(twisting, force[point])
         full = 0.5 * (time[point] - time[point - 1]) * (moment + moment_before) / inertia
+        spin_before = spins[point - 1]
         lost, share = slowed_spin(
-            twisting, spins[point - 1], full, share, force[point], friction[point], slip[point]
+            twisting, spin_before, full, share, force[point], friction[point], slip[point]
         )
-        spins[point] = max(spins[point - 1] - lost, 0.0)
+        spins[point] = max(spin_before - lost, 0.0)

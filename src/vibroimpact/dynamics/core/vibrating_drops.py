@@ -191,6 +191,7 @@ def write_flight(
 @compiled
 def write_centre(numbers: Vector, state: State) -> None:
     """Write where the sphere's centre is, and its velocity, to the numbers of a drop."""
+    # the fall of the sphere is a coordinate of unit mass, q = sqrt(m) times the way down
     root = math.sqrt(numbers[MASS])
     numbers[GAP] = -state.displacement[0] / root
     numbers[VELOCITY] = -state.velocity[0] / root
@@ -244,6 +245,8 @@ def write_impact(
 @compiled
 def write_vibration(system: System, drop: VibratingDrop, now: Now, row: Vector) -> None:
     """Write what vibration gained in an impact, and add what it lost to that of the drop."""
+    # vibration gains what it has more at the end, and what it has lost on the way; a driven
+    # coordinate loses minus the work of its drive
     lost = drop.lost_in_impact
     own = len(lost) - 1 - system.driven
     gained = vibration_energy(system, now.state) - vibration_energy(system, now.begun)

@@ -375,7 +375,8 @@ def _table(ended: _Ended) -> dict[str, Floats]:
     problem = ended.problem
     drops = ended.drops
     most = int(drops.impacts.max())
-    table = drops.rows[:, :most, : len(IMPACT_COLUMNS)].transpose(2, 0, 1).copy()
+    rows = drops.rows[:, :most]
+    table = rows[:, :, : len(IMPACT_COLUMNS)].transpose(2, 0, 1).copy()
     happened = np.isfinite(table[records.IMPACT])
     if not _is_asked_at_touch(problem):
         for number, law in enumerate(problem.laws):
@@ -386,8 +387,8 @@ def _table(ended: _Ended) -> dict[str, Floats]:
         columns["plate_velocity_m_s"] = np.where(happened, 0.0, np.nan)
         columns["plate_work_J"] = np.full(happened.shape, np.nan)
     if problem.oblique is not None:
-        last = records.ALONG + len(OBLIQUE_IMPACT_COLUMNS)
-        along = drops.rows[:, :most, records.ALONG : last].transpose(2, 0, 1).copy()
+        end = records.ALONG + len(OBLIQUE_IMPACT_COLUMNS)
+        along = rows[:, :, records.ALONG : end].transpose(2, 0, 1).copy()
         columns |= dict(zip(OBLIQUE_IMPACT_COLUMNS, along, strict=True))
     if problem.fluid is not None and ended.in_fluid is not None:
         columns[f"{problem.fluid.key}_lost_J"] = ended.in_fluid.lost_before_impacts(most)

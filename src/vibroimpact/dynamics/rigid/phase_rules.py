@@ -115,14 +115,17 @@ def _grid_matrices(steps: int) -> tuple[Floats, Floats, Floats]:
         spectrum = _spectrum(z)
         # with the far end, where the integral ends
         spectrum_with_end = _spectrum(np.append(z, 1.0))
-        slopes = 2.0 * legendre.legder(spectrum, axis=0)
-        derivatives[rule, :count, :count] = (legendre.legvander(z, count - 2) @ slopes).T
+        slopes = 2.0 * legendre.legder(spectrum, axis=0)  # z = 2 y - 1, so that d/dy = 2 d/dz
+        of_slopes = legendre.legvander(z, count - 2)
+        derivatives[rule, :count, :count] = (of_slopes @ slopes).T
         for finer, grid_steps in enumerate(steps_of_grids):
             y = np.array([graded(point / grid_steps) for point in range(grid_steps + 1)])
             polynomials = legendre.legvander(2.0 * y - 1.0, count)
+            of_values = polynomials[:, :count]
             grid = 2 * rule + finer
-            values[grid, :count, : len(y)] = (polynomials[:, :count] @ spectrum).T
-            integrals[grid, : count + 1, : len(y)] = (polynomials @ spectrum_with_end).T
+            number_of_points = len(y)
+            values[grid, :count, :number_of_points] = (of_values @ spectrum).T
+            integrals[grid, : count + 1, :number_of_points] = (polynomials @ spectrum_with_end).T
     return derivatives, values, integrals
 
 

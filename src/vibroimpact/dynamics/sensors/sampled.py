@@ -413,7 +413,9 @@ def _in_contact(
     times = np.clip(times, 0.0, stretch.length)
     plate_state = stretch.state(times)
     ground = stretch.system.ground
-    states = np.stack([plate_state.displacement[:, ground], plate_state.velocity[:, ground]])
+    displacement = plate_state.displacement[:, ground]
+    velocity = plate_state.velocity[:, ground]
+    states = np.stack([displacement, velocity])
     if instrument_state.shape[1]:
         instrument_states = _instrument_states(chain, ports, stretch, instrument_state, times)
         states = np.concatenate([states, instrument_states], axis=-1)

@@ -30,10 +30,11 @@ class ContactModes:
         rows = list(contacts)
         self.rigid = int(system.rigid.sum())
         assert system.rigid[: self.rigid].all()  # rigid motions come first
-        self.frequency_squared = system.angular_frequency[self.rigid :] ** 2
-        self.damping = np.ascontiguousarray(system.damping[self.rigid :])
-        outer = system.outer_shape[rows][:, self.rigid :]
-        inner = system.inner_shape[rows][:, self.rigid :]
+        vibrating = slice(self.rigid, None)
+        self.frequency_squared = system.angular_frequency[vibrating] ** 2
+        self.damping = np.ascontiguousarray(system.damping[vibrating])
+        outer = system.outer_shape[rows][:, vibrating]
+        inner = system.inner_shape[rows][:, vibrating]
         self.inside = bool(inner.any())
         parts = [outer, inner] if self.inside else [outer]
         self.shapes = np.stack(parts)

@@ -114,6 +114,7 @@ class LocalContact:
         stiffness = float(next_force - force) / step
         if not self.series:
             return stiffness
+        # two springs in series: 1/(1/k + s')
         _, compliance = self.series.linearised(force)
         return stiffness / (1.0 + float(compliance) * stiffness)
 
@@ -145,10 +146,12 @@ class LocalContact:
         slope = np.ones_like(approach)  # of the approach over the indentation
         step = _STEP * scale
         offsets = np.array([0.0, step]).reshape((2,) + (1,) * approach.ndim)
+        # delta + s(F_s(delta)) = y, of which the slope is 1 + s' F_s'
         for _ in range(_MOST_ITERATIONS):
             force, next_force = self._static(delta + offsets)
             series_indentation, compliance = self.series.linearised(force)
-            slope = 1.0 + compliance * ((next_force - force) / step)
+            stiffness = (next_force - force) / step
+            slope = 1.0 + compliance * stiffness
             correction = (delta + series_indentation - approach) / slope
             delta = np.maximum(delta - correction, self.release_indentation)
             if np.abs(correction).max() <= _CONVERGED * scale:

@@ -51,9 +51,9 @@ class Oscillators:
         They take displacement and velocity at the start to those at the time, per oscillator.
         """
         cosine, sine = self.propagators(time)
-        return np.array(
-            [[cosine, sine], [-(self.angular_frequency**2) * sine, cosine - self.damping * sine]]
-        )
+        cosine_rate = -(self.angular_frequency**2) * sine
+        sine_rate = cosine - self.damping * sine
+        return np.array([[cosine, sine], [cosine_rate, sine_rate]])
 
     def propagators(self, time: Floats) -> tuple[Floats, Floats]:
         """Return responses C and S to a unit initial displacement and velocity, (..., n) each.
@@ -73,15 +73,18 @@ class Oscillators:
         # rigid motions and critical damping
         sine_of_phase = np.sin(phase, where=oscillates, out=np.zeros_like(phase))
         sine = sine_of_phase / np.where(oscillates, damped_omega, 1.0)
+        # of which the limit for a frequency of zero is the time
         sine = decay * np.where(oscillates, sine, t)
         cosine = decay * np.cos(phase, where=oscillates, out=np.ones_like(phase))
         overdamped = zeta > 1.0
         if overdamped.any():
-            # factor out the slower of the two exponentials, so that none overflows
+            # sinh and cosh with the slower of their exponentials factored out, so that none
+            # overflows
             rate = damped_omega[overdamped]
             slow_decay = np.exp((rate - zeta[overdamped] * omega[overdamped]) * t)
-            sine[..., overdamped] = slow_decay * -np.expm1(-2.0 * rate * t) / (2.0 * rate)
-            cosine[..., overdamped] = 0.5 * slow_decay * (1.0 + np.exp(-2.0 * rate * t))
+            faster = -2.0 * rate * t
+            sine[..., overdamped] = slow_decay * -np.expm1(faster) / (2.0 * rate)
+            cosine[..., overdamped] = 0.5 * slow_decay * (1.0 + np.exp(faster))
         return cosine + zeta * omega * sine, sine
 
 

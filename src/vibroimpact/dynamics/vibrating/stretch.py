@@ -150,7 +150,9 @@ class VibratingStretch:
         """
         system = self.system
         in_laws = sum(contact.power for contact in self.contacts)
-        in_contacts = in_laws + (self.path.massless.T**2 / system.mobility).sum(axis=1)
+        # of a dashpot e'^2/m, with the mobility m, and of a mode 2 zeta omega v^2
+        in_elements = self.path.massless.T**2 / system.mobility
+        in_contacts = in_laws + in_elements.sum(axis=1)
         in_coordinates = system.damping * self.velocities**2
         if system.driven:
             # a driven coordinate loses minus the work of its drive, which balances the contact

@@ -236,7 +236,8 @@ class WaitingDrop(FollowedDrop):
         flight = self._next_flight()
         touch, _ = flight.touch(np.zeros(1))
         indentation = float(np.nan_to_num(row[records.INDENTATION]))
-        if oblique.distance(flight, touch) > np.sqrt(numbers[records.RADIUS] * indentation):
+        contact_radius = np.sqrt(numbers[records.RADIUS] * indentation)  # Hertz: a^2 = R delta
+        if oblique.distance(flight, touch) > contact_radius:
             numbers[records.DENT] = 0.0
 
     # what is told of it
