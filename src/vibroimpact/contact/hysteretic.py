@@ -110,6 +110,7 @@ def hysteretic_restitution(damping_factor: Array) -> Array:
     """
     factor = np.asarray(damping_factor, dtype=float)
     is_small = factor < _SMALL
+    # for small factors both sides of the equation cancel: a series in D
     series = np.polynomial.polynomial.polyval(np.where(is_small, factor, 0.0), _SERIES)
     # with e D = 1 - exp(-w) the equation is w + exp(-w) - 1 = D - ln(1 + D): convex in w, so that
     # Newton's method converges monotonically from an upper bound of the root

@@ -239,6 +239,7 @@ def _motion(block: Block) -> tuple[Floats, Floats]:
     x, y, z = (second - first) / length
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     rotation = np.eye(3) + math.sin(angle) * cross + (1.0 - math.cos(angle)) * cross @ cross
+    # shifted first, then turned about the axis through the first point
     return rotation, rotation @ (shift - first) + first
 
 

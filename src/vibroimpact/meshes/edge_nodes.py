@@ -76,6 +76,7 @@ def with_edge_nodes(
         if stated is not None:
             known = middle[of_elements].reshape(stated.shape)
             stated[...] = np.where(stated == OMITTED, known, stated)
+    # new nodes lie as on a straight edge
     halfway = np.zeros((len(new), 3))
     if len(numbers):
         ends = np.minimum(np.searchsorted(numbers, edges[new]), max(len(numbers) - 1, 0))

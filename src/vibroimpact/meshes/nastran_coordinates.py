@@ -57,7 +57,7 @@ class _System(NamedTuple):
         """Return a point in the basic system."""
         if self.kind == "C":
             radius, angle, height = point
-            angle = math.radians(angle)
+            angle = math.radians(angle)  # from the plane x z
             local = (radius * math.cos(angle), radius * math.sin(angle), height)
         elif self.kind == "S":
             radius, polar, azimuth = point

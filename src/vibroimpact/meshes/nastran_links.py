@@ -227,6 +227,7 @@ def _rigid(card: Card, leading: Members, following: Members) -> Rigid | None:
     """
     if sum(len(components) for _, components in leading) != COMPONENTS:
         return None
+    # what leads and what follows moves alike: one rigid motion, of which all have a part
     members: dict[int, set[int]] = {}
     for node, components in [*leading, *following]:
         members.setdefault(node, set()).update(components)

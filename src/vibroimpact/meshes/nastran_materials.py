@@ -78,6 +78,7 @@ class NastranMaterials:
         """Return the elements of each property, which are the sets `PIDn`, with its material."""
         materials = dict(self._others)
         for number, material in self._isotropic.items():
+            # PARAM,WTMASS multiplies every density, as of files that state weights
             materials[number] = replace(material, density=material.density * self._mass_per_weight)
         sections = []
         for number, (material_number, other) in self._properties.items():

@@ -116,6 +116,7 @@ def tied_nodes(
                 "nodes of them but those of the second and those that are tied already"
             )
             continue
+        # without a position tolerance, a part of an edge of an element of the leading surface
         edge = _mean_edge(mesh, leader)
         reach = _REACH * edge
         if tie.reach is not None:

@@ -186,6 +186,7 @@ def _card(name: str, numbers: Sequence[int]) -> Iterator[str]:
 
 def _constraint(equation: Sequence[tuple[int, int, float]]) -> Iterator[str]:
     """Yield the lines of a multipoint constraint in large fields, two terms to a pair of lines."""
+    # sum of A_i u_i = 0: node, component and coefficient of each term
     for start in range(0, len(equation), 2):
         terms = [
             f"{node:16d}{axis:16d}{nastran_number(coefficient):>16}"

@@ -177,6 +177,7 @@ def checked_values(name: str, data: ArrayLike, nodes: int) -> Floats:
 
 def _array(name: str, values: NDArray[np.generic]) -> str:
     """Return an array as a VTK DataArray element: number of bytes and bytes, both in base64."""
+    # binary data of VTK: little-endian, with the number of bytes before them
     raw = values.astype(values.dtype.newbyteorder("<")).tobytes()
     text = base64.b64encode(len(raw).to_bytes(8, "little") + raw).decode("ascii")
     label = quoteattr("".join(letter for letter in name if letter.isprintable()))

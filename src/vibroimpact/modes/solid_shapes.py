@@ -90,6 +90,7 @@ def _shape_marks(
     """
     is_visible, order = _visible_facets(deformed)
     corners = _projected(deformed[is_visible][order])
+    # displacement along the outward direction, mean of the corners of a facet
     radial = np.einsum("fci,fci->fc", displacements, outwards).mean(axis=1)
     largest_radial = np.abs(radial).max()
     if largest_radial < _TWISTING * largest:

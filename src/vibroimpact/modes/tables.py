@@ -55,6 +55,7 @@ def mode_table(modes: BodyModes) -> Table:
         shown.append(number - 1)
     left_out = number - len(shown)
     gap = Gap(ROWS, left_out) if left_out else None
+    # effective modal mass along z: the square of the participation of a mode of unit mass
     effective = basis.participation[:, 2] ** 2
     errors = _error_texts(modes.model.frequency_errors[shown])
     shapes = _fixed_texts(basis.contact[shown], float(np.abs(basis.contact).max()))
