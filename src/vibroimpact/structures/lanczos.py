@@ -186,6 +186,7 @@ class _Krylov:
 
         Its coefficients in the space are returned too.
         """
+        # classical Gram-Schmidt in the inner product of M
         total = np.zeros((self.size, block.shape[1]))
         for _ in range(2):  # twice, against rounding
             block = block - self._known @ (self._known_momenta.T @ block)
@@ -196,6 +197,7 @@ class _Krylov:
 
     def _add(self, block: Floats) -> None:
         """Add a block to the space, orthonormal in M and without dependent directions."""
+        # orthonormal by the eigenvectors of the Gram matrix B^T M B
         momenta = self._mass @ block
         squares, directions = np.linalg.eigh(block.T @ momenta)
         independent = squares > _DEPENDENT * max(squares[-1], 1e-300)

@@ -172,6 +172,7 @@ def plate_theory_term(
     """
     modulus = youngs_modulus / (1.0 - poissons_ratio**2)
     rigidity = modulus * thickness**3 / 12.0
+    # kappa G h, with G = E/(2 (1 + nu)) = (1 - nu)/2 of the modulus in plane strain
     shear_stiffness = shear_factor * 0.5 * (1.0 - poissons_ratio) * modulus * thickness
 
     def kernel(k: Floats) -> Floats:
@@ -187,6 +188,7 @@ def layer_kernels(y: Floats) -> tuple[Floats, Floats]:
 
     For short waves each tends to 1/2.
     """
+    # with x = y/2: cosh^2 x = (1 + cosh y)/2 and sinh^2 x = (cosh y - 1)/2
     y = np.minimum(y, _DEEPEST)
     bending = (1.0 + np.cosh(y)) / (2.0 * _sinh_less(y))
     squeezing = (np.cosh(y) - 1.0) / (2.0 * (np.sinh(y) + y))
@@ -195,6 +197,7 @@ def layer_kernels(y: Floats) -> tuple[Floats, Floats]:
 
 def _sinh_less(y: Floats) -> Floats:
     """Return sinh y - y, by its series where the difference would cancel."""
+    # y^3/6 (1 + y^2/(4 5) (1 + y^2/(6 7) ...)), by Horner's rule
     series = np.ones_like(y)
     for n in range(17, 3, -2):
         series = 1.0 + y**2 / (n * (n - 1)) * series

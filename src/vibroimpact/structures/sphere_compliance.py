@@ -212,10 +212,10 @@ def _displacements(
 
     n = degree[2:]
     outer, inner = _field_amplitudes(nu, n, normal[2:], shear[2:])
-    radial = np.concatenate(
-        [[expansion, radial_1], outer * (n + 1.0) * (n - 2.0 + 4.0 * nu) + inner * n]
-    )
-    meridional = np.concatenate([[0.0, meridional_1], outer * (n + 5.0 - 4.0 * nu) + inner])
+    radial_beyond_1 = outer * (n + 1.0) * (n - 2.0 + 4.0 * nu) + inner * n
+    meridional_beyond_1 = outer * (n + 5.0 - 4.0 * nu) + inner
+    radial = np.concatenate([[expansion, radial_1], radial_beyond_1])
+    meridional = np.concatenate([[0.0, meridional_1], meridional_beyond_1])
     return radial, meridional
 
 

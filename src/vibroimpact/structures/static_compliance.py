@@ -312,7 +312,8 @@ def _face_rows(
         weights.append(disc_weights * average.weights(disc_points))
     is_on_body, motions = _on_body(held.structure.mesh, np.concatenate(points))
     # the part of each disc that is on the body
-    shares = np.where(is_on_body, np.concatenate(weights), 0.0).reshape(len(places), -1)
+    weights_on_body = np.where(is_on_body, np.concatenate(weights), 0.0)
+    shares = weights_on_body.reshape(len(places), -1)
     for place, is_inside in zip(places, is_on_body.reshape(shares.shape), strict=True):
         if not is_inside.any():
             raise InputError(

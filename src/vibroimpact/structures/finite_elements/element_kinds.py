@@ -310,6 +310,7 @@ def _wedge_corner_terms(
                 triangle = coordinate
                 triangle_slope = np.ones_like(coordinate)
                 bubble_slope = np.zeros_like(t)
+            # L (2 L - 1) (1 + s t)/2 - L (1 - t^2)/2, or to first order L (1 + s t)/2
             value = triangle * linear - coordinate * bubble
             by_area = {index: triangle_slope * linear - bubble}
             by_t = 0.5 * sign * triangle + bubble_slope

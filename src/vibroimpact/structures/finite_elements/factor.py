@@ -198,6 +198,7 @@ def factor_entries(parts: list[Integers], adjacency: csr_array) -> int:
         neighbours = rank[_neighbours(adjacency, part)[0]]
         reached = np.unique(np.concatenate([neighbours, *coupled[number]]))
         coupled[number] = []
+        # a dense block of both factors, and those that couple it to what comes later
         later = reached[reached >= ends[number]]
         entries += len(part) ** 2 + 2 * len(part) * len(later)
         if len(later):  # they are all coupled to the part that is eliminated first among them

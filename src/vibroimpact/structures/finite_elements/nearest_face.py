@@ -104,7 +104,7 @@ def _projected(nodes: Floats, faces: Faces, face: Integers, points: Floats) -> F
         offset = np.einsum("pk,pki->pi", values, face_nodes) - points
         tangents = slopes @ face_nodes  # (points, 2, 3)
         metric = tangents @ tangents.transpose(0, 2, 1)
-        # regular also where the tangents are parallel
+        # normal equations of Gauss and Newton, regular also where the tangents are parallel
         metric += 1e-14 * np.trace(metric, axis1=1, axis2=2)[:, None, None] * np.eye(2)
         step = np.linalg.solve(metric, (tangents @ offset[:, :, None]))[:, :, 0]
         next_local = _inside(local - step, len(faces.corners))

@@ -174,6 +174,7 @@ def _bending(
     The mass is integrated from the shape functions of deflection and slope at Gauss points.
     `shear_flexibility` is the ratio of shear to bending flexibility.
     """
+    # cubic shape functions of deflection; those with phi are of the shear that bending causes
     phi = shear_flexibility
     points, weights = np.polynomial.legendre.leggauss(4)
     s = 0.5 * (points + 1.0)  # from one end to the other, 0 to 1
@@ -199,7 +200,7 @@ def _bending(
         line_mass * (deflection * weights) @ deflection.T
         + line_inertia * (slope * weights) @ slope.T
     )
-    # the stiffness is known in closed form
+    # Przemieniecki's stiffness in closed form, E I/((1 + phi) L^3) times 12, 6 L, (4 + phi) L^2 ...
     a = 12.0 / length**3
     b = 6.0 / length**2
     c = 1.0 / length

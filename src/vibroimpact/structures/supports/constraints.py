@@ -110,14 +110,12 @@ class Constraints:
             function = motion[[row]].tocoo()
             weights = self._in_free(function.col.tolist(), function.data.tolist())
             size = float(np.abs(function.data).max(initial=0.0))
-            # otherwise the function is held already
-            if max(map(abs, weights.values()), default=0.0) > _NONE * size:
-                largest = max(weights, key=lambda dof: abs(weights[dof]))
-                self._ties[largest] = {
-                    dof: -weight / weights[largest]
-                    for dof, weight in weights.items()
-                    if dof != largest
-                }
+            if not max(map(abs, weights.values()), default=0.0) > _NONE * size:
+                continue  # the function is held already
+            # that of the largest weight follows the others, so that no share exceeds one
+            largest = max(weights, key=lambda dof: abs(weights[dof]))
+            largest_weight = weights.pop(largest)
+            self._ties[largest] = {dof: -weight / largest_weight for dof, weight in weights.items()}
 
     def _in_free(self, dofs: list[int], weights: list[float]) -> dict[int, float]:
         """Return a linear function of degrees of freedom in terms of those that are not tied."""
