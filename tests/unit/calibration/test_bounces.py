@@ -146,8 +146,8 @@ def record_of(*touches: float, duration: float = 1.0) -> vi.signals.Record:
         (record_of(0.2, 0.4, 0.7), "the times between 3 touches do not decrease"),
         (
             record_of(0.2, 0.5, 0.65, 0.85),
-            "of its 4 touches 3 at best have intervals that shrink as those of bounces, as "
-            "three touches may have by chance",
+            "of its 4 touches 3 at best have intervals that shrink as those of bounces, "
+            "which three touches may have by chance",
         ),
         (
             record_of(0.2, 0.5, 0.65, 0.75, 0.95),

@@ -123,7 +123,7 @@ def test_a_file_that_is_cut_off_says_so(
     with pytest.raises(SystemExit, match="0"):
         main()
     told = "".join(capsys.readouterr().err.split())
-    assert f"vibroimpact: doubt: {path}: {words}".replace(" ", "") in told
+    assert f"vibroimpact: warning: {path}: {words}".replace(" ", "") in told
 
 
 def comment(words: str) -> bytes:
