@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
@@ -11,7 +10,7 @@ import pytest
 import typer.main
 
 import vibroimpact as vi
-from vibroimpact.cli import main
+from support import run_command
 
 
 @pytest.fixture(autouse=True, scope="session")
@@ -60,9 +59,6 @@ def command(
     monkeypatch.chdir(tmp_path)
 
     def run(*words: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["vibroimpact", *map(str, words)])
-        with pytest.raises(SystemExit) as left:
-            main()
-        return int(left.value.code or 0), *capsys.readouterr()
+        return run_command(monkeypatch, capsys, *words)
 
     return run

@@ -12,6 +12,8 @@ from typing import Any
 
 import pytest
 
+from vibroimpact.cli import main
+
 ROOT = Path(__file__).parents[1]
 
 
@@ -69,6 +71,24 @@ def supported_plate(size: Iterable[float], damping: float) -> dict[str, Any]:
         "supports": "simply-supported",
         "damping": damping,
     }
+
+
+def run_command(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: object
+) -> tuple[int, str, str]:
+    """Run `vibroimpact`; return its exit status, its output and its errors."""
+    monkeypatch.setattr("sys.argv", ["vibroimpact", *map(str, arguments)])
+    with pytest.raises(SystemExit) as left:
+        main()
+    return int(left.value.code or 0), *capsys.readouterr()
+
+
+def outcome(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str
+) -> tuple[int, str]:
+    """Run `vibroimpact`; return its exit status and all that it wrote, in one line."""
+    status, output, errors = run_command(monkeypatch, capsys, *arguments)
+    return status, " ".join((output + errors).split())
 
 
 def one_in(every: int, values: Iterable[Any], name: Callable[[Any], str] = str) -> list[Any]:

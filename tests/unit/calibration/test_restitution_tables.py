@@ -12,11 +12,10 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from support import plain_case
+from support import outcome, plain_case
 from vibroimpact.calibration.bounces.speed_laws import speed_laws
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.calibration.restitutions.report import noise_sentence
-from vibroimpact.cli import main
 
 SPEED = np.array([0.5, 1.0, 1.5, 2.0, 3.0, 4.0])
 RESTITUTION = np.array([0.86, 0.82, 0.80, 0.79, 0.75, 0.74])
@@ -29,16 +28,6 @@ def table(path: Path, header: str = "speed [m/s],restitution,count") -> Path:
         f"{header}\n" + "".join(f"{speed:g},{e:g},{n}\n" for speed, e, n in rows), encoding="utf-8"
     )
     return path
-
-
-def outcome(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str
-) -> tuple[int, str]:
-    monkeypatch.setattr("sys.argv", ["vibroimpact", "calibrate", *arguments])
-    with pytest.raises(SystemExit) as left:
-        main()
-    written = capsys.readouterr()
-    return int(left.value.code or 0), " ".join((written.out + written.err).split())
 
 
 def test_the_fit_is_the_weighted_least_squares() -> None:
@@ -126,7 +115,7 @@ def test_the_command(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    status, printed = outcome(monkeypatch, capsys, str(table(tmp_path / "ev.csv")))
+    status, printed = outcome(monkeypatch, capsys, "calibrate", str(table(tmp_path / "ev.csv")))
     assert status == 0, printed
     assert "6 restitutions over the approach speed, means of 38 impacts." in printed
     assert "Linear: e = a + b v with a = 0.8" in printed
@@ -148,7 +137,9 @@ def test_the_command(
     assert "Restitutions of ev.csv" in (folder / "report.html").read_text(encoding="utf-8")
     with pytest.raises(vi.InputError, match="restitutions of a table, not the result of a run"):
         vi.load_result(folder)
-    assert outcome(monkeypatch, capsys, str(tmp_path / "ev.csv"))[0] == 2  # the folder is there
+    assert (
+        outcome(monkeypatch, capsys, "calibrate", str(tmp_path / "ev.csv"))[0] == 2
+    )  # the folder is there
 
 
 def test_what_the_intervals_are_from(tmp_path: Path) -> None:
@@ -224,7 +215,7 @@ def test_what_is_refused(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("ev.csv").write_text(text, encoding="utf-8")
-    status, printed = outcome(monkeypatch, capsys, "ev.csv", *options)
+    status, printed = outcome(monkeypatch, capsys, "calibrate", "ev.csv", *options)
     assert (status, words in printed) == (2, True), printed
 
 
@@ -236,7 +227,7 @@ def test_a_record_with_times_is_still_one(
         "time [s],velocity [m/s],e [V]\n" + "".join(f"{n / 1000},{n % 3},0\n" for n in range(2000)),
         encoding="utf-8",
     )
-    status, printed = outcome(monkeypatch, capsys, "a.csv")
+    status, printed = outcome(monkeypatch, capsys, "calibrate", "a.csv")
     assert status == 2
     assert "it has several channels" in printed
 

@@ -10,18 +10,8 @@ from pathlib import Path
 import pytest
 
 import vibroimpact as vi
+from support import outcome
 from vibroimpact.cases.template import _SECTIONS, case_template
-from vibroimpact.cli import main
-
-
-def command(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str
-) -> tuple[int, str]:
-    monkeypatch.setattr("sys.argv", ["vibroimpact", *arguments])
-    with pytest.raises(SystemExit) as left:
-        main()
-    written = capsys.readouterr()
-    return int(left.value.code or 0), " ".join((written.out + written.err).split())
 
 
 @pytest.mark.parametrize("name", ["paper:type1-theory", "paper:type2-identified", "paper:type3"])
@@ -65,13 +55,13 @@ def test_new_writes_a_case_that_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert command(monkeypatch, capsys, "new", "my rock", "--from", "paper:type1-variable")[0] == 0
+    assert outcome(monkeypatch, capsys, "new", "my rock", "--from", "paper:type1-variable")[0] == 0
     assert vi.load_case("my rock.toml").name == "my rock"
-    assert command(monkeypatch, capsys, "check", "my rock.toml")[0] == 0
-    status, words = command(monkeypatch, capsys, "new", "my rock")
+    assert outcome(monkeypatch, capsys, "check", "my rock.toml")[0] == 0
+    status, words = outcome(monkeypatch, capsys, "new", "my rock")
     assert status == 2
     assert "my rock.toml exists; take another name, or --force to replace it" in words
-    assert command(monkeypatch, capsys, "new", "my rock.toml", "--force")[0] == 0
+    assert outcome(monkeypatch, capsys, "new", "my rock.toml", "--force")[0] == 0
     assert vi.load_case("my rock.toml").contact.law == "lankarani-nikravesh"
 
 
@@ -92,7 +82,7 @@ def test_wrong_names(
     words: str,
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    status, said = command(monkeypatch, capsys, "new", *arguments)
+    status, said = outcome(monkeypatch, capsys, "new", *arguments)
     assert status == 2
     assert words in said
     assert not list(tmp_path.iterdir())
@@ -101,7 +91,7 @@ def test_wrong_names(
 def test_cases_lists_all(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    status, words = command(monkeypatch, capsys, "cases")
+    status, words = outcome(monkeypatch, capsys, "cases")
     assert status == 0
     assert all(name in words for name in vi.shipped_cases())
 
@@ -144,7 +134,7 @@ def test_a_run_takes_them(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     arguments = ["run", *ONE_IMPACT, "--set", "drop.height=1 m"]
-    assert command(monkeypatch, capsys, *arguments)[0] == 0
+    assert outcome(monkeypatch, capsys, *arguments)[0] == 0
     result = vi.load_result("out")
     assert len(result.impacts["impact"]) == 1
     assert result.case["drop"]["height"] == 1.0
@@ -155,7 +145,7 @@ def test_a_calibration_takes_them(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     arguments = ["calibrate", *ONE_IMPACT, "--set", "calibrate.target={restitution=0.7}"]
-    assert command(monkeypatch, capsys, *arguments, "--set", "calibrate.model=adams-impact")[0] == 0
+    assert outcome(monkeypatch, capsys, *arguments, "--set", "calibrate.model=adams-impact")[0] == 0
     assert len(json.loads((tmp_path / "out" / "calibration.json").read_text())["impacts"]) == 1
     assert vi.simulate(vi.load_case(tmp_path / "out" / "case.toml")).impacts[
         "restitution_achieved"
@@ -174,7 +164,7 @@ def test_a_new_case_has_them(
         "--set",
         "contact.law=flores",
     ]
-    assert command(monkeypatch, capsys, "new", "thick", *settings)[0] == 0
+    assert outcome(monkeypatch, capsys, "new", "thick", *settings)[0] == 0
     changes = {
         "name": "thick",
         "plate.size.thickness": "10 mm",
@@ -217,7 +207,7 @@ def test_wrong_settings(
     """Every command that takes them says the same, and writes nothing."""
     monkeypatch.chdir(tmp_path)
     case = ["mine", "--from", "paper:type1-theory"] if name == "new" else ["paper:type1-theory"]
-    status, said = command(monkeypatch, capsys, name, *case, "--set", setting)
+    status, said = outcome(monkeypatch, capsys, name, *case, "--set", setting)
     assert status == 2
     assert words in said
     assert not list(tmp_path.iterdir())

@@ -10,7 +10,7 @@ import pytest
 import tomli_w
 
 import vibroimpact as vi
-from support import plain_case
+from support import plain_case, run_command
 from vibroimpact.cli import main
 
 NAN, INF = float("nan"), float("inf")
@@ -205,10 +205,8 @@ def outcome(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str
 ) -> tuple[int, str]:
     """Run the command line; return its exit status and what it wrote to the error stream."""
-    monkeypatch.setattr("sys.argv", ["vibroimpact", *arguments])
-    with pytest.raises(SystemExit) as left:
-        main()
-    return int(left.value.code or 0), capsys.readouterr().err
+    status, _, errors = run_command(monkeypatch, capsys, *arguments)
+    return status, errors
 
 
 @pytest.mark.parametrize(

@@ -21,8 +21,7 @@ import pytest
 from scipy.io import loadmat, wavfile
 
 import vibroimpact as vi
-from support import plain_case
-from vibroimpact.cli import main
+from support import outcome, plain_case
 from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.dynamics.motion.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, meanings
 from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
@@ -136,16 +135,6 @@ def files_of(format: str, drop: Drop) -> Mapping[str, bytes]:
 
 def notes_of(format: str, drop: Drop) -> str:
     return " ".join(find_export_format(format).notes(drop))
-
-
-def outcome(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str
-) -> tuple[int, str]:
-    monkeypatch.setattr("sys.argv", ["vibroimpact", *arguments])
-    with pytest.raises(SystemExit) as left:
-        main()
-    written = capsys.readouterr()
-    return int(left.value.code or 0), " ".join((written.out + written.err).split())
 
 
 # the drop of a folder

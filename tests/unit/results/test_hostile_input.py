@@ -15,11 +15,10 @@ import tomli_w
 import vibroimpact as vi
 from hostile_runs import LONGEST, attack
 from studies import study_table
-from support import plain_case
+from support import plain_case, run_command
 from vibroimpact.cases.fields.size_limits import DEEPEST, check_text
 from vibroimpact.charts.files import render_png
 from vibroimpact.charts.matplotlib import matplotlib_figure
-from vibroimpact.cli import main
 from vibroimpact.errors import MOST_LINES, ComputationError, InputError
 from vibroimpact.files.result_folder import check_free
 from vibroimpact.results.result import result_of
@@ -225,11 +224,8 @@ def test_folders_that_can_not_be(name: str, words: str) -> None:
 def run(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str
 ) -> tuple[int, str]:
-    monkeypatch.setattr("sys.argv", ["vibroimpact", *arguments])
-    with pytest.raises(SystemExit) as left:
-        main()
-    written = capsys.readouterr()
-    return int(left.value.code or 0), written.out + written.err
+    status, output, errors = run_command(monkeypatch, capsys, *arguments)
+    return status, output + errors
 
 
 @pytest.mark.parametrize(

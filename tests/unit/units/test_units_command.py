@@ -9,22 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import vibroimpact as vi
-from vibroimpact.cli import main
+from support import outcome
 from vibroimpact.cli.shared import pair_in
 from vibroimpact.cli.unit_table import in_unit_systems, number_text
 from vibroimpact.units.reading import dimension_of, parse_quantity, unit_text
 
 POWERS = st.floats(1.0, 3.0).map(lambda power: round(power, 3))
-
-
-def outcome(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str
-) -> tuple[int, str]:
-    monkeypatch.setattr("sys.argv", ["vibroimpact", "units", *arguments])
-    with pytest.raises(SystemExit) as left:
-        main()
-    written = capsys.readouterr()
-    return int(left.value.code or 0), " ".join((written.out + written.err).split())
 
 
 @pytest.mark.parametrize(
@@ -158,7 +148,7 @@ def test_the_command(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    status, printed = outcome(monkeypatch, capsys, *arguments)
+    status, printed = outcome(monkeypatch, capsys, "units", *arguments)
     assert (status, words in printed) == (0, True), printed
 
 
@@ -191,7 +181,7 @@ def test_the_command_refuses(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    status, printed = outcome(monkeypatch, capsys, *arguments)
+    status, printed = outcome(monkeypatch, capsys, "units", *arguments)
     assert (status, words in printed) == (2, True), printed
 
 
@@ -203,7 +193,9 @@ def test_quotes_are_advised_only_where_words_of_the_unit_are_missing(
     """
     assert (
         '--to "N s/mm"'
-        in outcome(monkeypatch, capsys, "179.75", "N", "s/m", "--to", "N", "s/mm")[1]
+        in outcome(monkeypatch, capsys, "units", "179.75", "N", "s/m", "--to", "N", "s/mm")[1]
     )
     for unit in ("kg", "foo"):
-        assert "quotes" not in outcome(monkeypatch, capsys, "5", "N", "s/m", "--to", unit)[1]
+        assert (
+            "quotes" not in outcome(monkeypatch, capsys, "units", "5", "N", "s/m", "--to", unit)[1]
+        )
