@@ -87,32 +87,15 @@ class FrictionCalibration(Reported, reported_in="vibroimpact.calibration.report"
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> seen = vi.calibration.Observations(
-    ...     speeds=np.full(3, 3.0),
-    ...     wanted={"separation_velocity_x": np.array([3.92, 4.93, 5.91])},
-    ...     speed_noise=np.zeros((3, 3)),
-    ...     noise={"separation_velocity_x": 0.02 * np.eye(3)},
-    ... )
-    >>> impacts = vi.calibration.ObliqueImpacts(
-    ...     seen, np.array([5.0, 6.0, 7.0]), np.zeros(3), seen.wanted
-    ... )
-    >>> found = vi.calibration.calibrate_friction(
-    ...     vi.case_of(
-    ...         {
-    ...             "sphere": {"radius": 0.01, "material": "glass"},
-    ...             "plate": {"material": "steel"},
-    ...             "drop": {"speed": 3.0, "angle": 0.5},
-    ...             "contact": {
-    ...                 "law": "newton",
-    ...                 "restitution": 0.8,
-    ...                 "friction": {"law": "coulomb", "coefficient": 0.1},
-    ...             },
-    ...             "run": {"impacts": 1},
-    ...         }
-    ...     ),
-    ...     impacts,
-    ...     ["friction.coefficient"],
-    ... )
+    >>> drop = {"speed": 3.0, "angle": 0.5}
+    >>> coulomb = {"law": "coulomb", "coefficient": 0.1}
+    >>> case = vi.load_case("paper:type1-theory", {"drop": drop, "contact.friction": coulomb})
+    >>> wanted = {"separation_velocity_x": np.array([3.92, 4.93, 5.91])}
+    >>> noise = {"separation_velocity_x": 0.02 * np.eye(3)}
+    >>> seen = vi.calibration.Observations(np.full(3, 3.0), wanted, np.zeros((3, 3)), noise)
+    >>> velocity = np.array([5.0, 6.0, 7.0])
+    >>> impacts = vi.calibration.ObliqueImpacts(seen, velocity, np.zeros(3), wanted)
+    >>> found = vi.calibration.calibrate_friction(case, impacts, ["friction.coefficient"])
     >>> found.names, found.values.round(2).tolist(), found.slips.tolist()
     (('friction.coefficient',), [0.2], [True, True, True])
     """
