@@ -17,6 +17,16 @@ from vibroimpact.cli import main
 ROOT = Path(__file__).parents[1]
 
 
+THIN_PLATE = {
+    "size": ["300 mm", "200 mm", "6 mm"],
+    "material": "steel",
+    "model": "elastic",
+    "modes": 12,
+    "damping": 0.02,
+    "supports": "clamped",
+    "mesh": {"element_size": "50 mm"},
+}
+"""The plate of a case: a thin elastic one of few elements and modes."""
 COARSE_PLATE = {
     "model": "elastic",
     "material": "steel",

@@ -21,7 +21,7 @@ import pytest
 from scipy.io import loadmat, wavfile
 
 import vibroimpact as vi
-from support import outcome, plain_case
+from support import THIN_PLATE, outcome, plain_case
 from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.dynamics.motion.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, meanings
 from vibroimpact.dynamics.sensors.instruments.sensor import Sensor
@@ -39,15 +39,7 @@ from written_results import write_result
 ELASTIC = {
     "name": "elastic",
     "sphere": {"radius": "25 mm", "material": "rock-paper"},
-    "plate": {
-        "size": ["300 mm", "200 mm", "6 mm"],
-        "material": "steel",
-        "model": "elastic",
-        "modes": 12,
-        "damping": 0.02,
-        "supports": "clamped",
-        "mesh": {"element_size": "50 mm"},
-    },
+    "plate": THIN_PLATE,
     "drop": {"speed": 3.0, "position": ["20 mm", "10 mm"]},
     "contact": {"law": "hunt-crossley", "restitution": 0.8},
     "run": {"impacts": 1, "duration": 0.05},

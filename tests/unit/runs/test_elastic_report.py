@@ -23,6 +23,7 @@ from rich.console import Console
 
 import vibroimpact as vi
 from pages import Page
+from support import THIN_PLATE
 from vibroimpact.dynamics.motion.columns import (
     IMPACT_COLUMNS,
     LEDGER,
@@ -56,15 +57,6 @@ SPHERE = {
     "damping": 0.02,
     "mesh": {"elements_across": 4},
 }
-PLATE = {
-    "size": ["300 mm", "200 mm", "6 mm"],
-    "material": "steel",
-    "model": "elastic",
-    "modes": 12,
-    "damping": 0.02,
-    "supports": "clamped",
-    "mesh": {"element_size": "50 mm"},
-}
 SENSORS = [
     {"name": "fast one", "position": ["60 mm", "30 mm"], "rate": "100 kHz"},
     {"name": "slow/one", "position": [0, "-50 mm"], "quantity": "velocity", "rate": "2 kHz"},
@@ -75,7 +67,7 @@ def elastic_case(**changes: Any) -> vi.Case:
     case: dict[str, Any] = {
         "name": "elastic",
         "sphere": SPHERE,
-        "plate": PLATE,
+        "plate": THIN_PLATE,
         "drop": {"speed": 3.0, "position": ["20 mm", "10 mm"]},
         "contact": {"law": "hunt-crossley", "restitution": 0.8},
         "run": {"impacts": 2},
