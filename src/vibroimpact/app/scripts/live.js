@@ -175,6 +175,9 @@
     controls.showFaults(lines);
     $("faults").hidden = !lines.length;
     $("faults").replaceChildren(...lines.map((line) => make("p", { text: line })));
+    const isOlder = lines.length > 0 && Boolean(state.last);
+    $("older").hidden = !isOlder;
+    $("results").classList.toggle("older", isOlder);
   };
 
   // The name of the shipped case that is shown, unless it was changed.
