@@ -188,15 +188,16 @@ def without_baseline(record: Record) -> Record:
 def _offset_doubt(record: Record, removed: Removed, largest: float, peak: float) -> str:
     """Return the doubt about a baseline with a largest magnitude, beside the peak of the rest."""
     unit = "" if record.unit in ("", "1") else f" {record.unit}"
-    drifts = removed.drift > _LARGE * largest
-    drift = f" that drifts by {removed.drift:.4g}{unit}" if drifts else ""
+    drift = ""
+    up_to = ""
+    if removed.drift > _LARGE * largest:
+        drift = f" that drifts by {removed.drift:.4g}{unit}"
+        up_to = "up to "
+    share = "all that there is"
     if peak:
         share = (
-            f"{'up to ' if drifts else ''}{largest / peak:.2g} times the largest magnitude "
-            "of the rest of the record"
+            f"{up_to}{largest / peak:.2g} times the largest magnitude of the rest of the record"
         )
-    else:
-        share = "all that there is"
     return (
         f"an offset of {removed.offset:.4g}{unit}{drift} was removed from "
         f"{quoted(record.name)}, {share}: check that the channel rests at zero, and that it is "
@@ -236,7 +237,8 @@ def _levels(value: Floats) -> _Levels:
     # of white noise the middle half spans 1.35 standard deviations, and its mean has 1.09 times the
     # deviation of the mean of all: 1.09 / 1.35 = 0.81
     deviation = 0.81 * float(np.median(scatter[quiet])) / np.sqrt(size)
-    unlike_rise = float(np.median(np.abs(rise[quiet] - np.median(rise[quiet]))))
+    quiet_rise = rise[quiet]
+    unlike_rise = float(np.median(np.abs(quiet_rise - np.median(quiet_rise))))
     if unlike_rise > _STEEP * deviation + _QUIET_SHARE * float(scatter.max()):
         # what rises here and falls there is a slow vibration where it crosses its middle, and no
         # rest: all blocks count
@@ -288,8 +290,10 @@ def _fitted(levels: _Levels, span: float) -> _Fit | None:
     least = _NEGLIGIBLE * span
     fit, parameters = _best_fit(position, level, max(least, levels.deviation))
     fit_stands_out = _stands_out(fit, parameters, position, level, levels.deviation, least)
-    # the quiet blocks before the first touch
-    lead = 0 if levels.quiet.all() else int(np.argmin(levels.quiet))
+    # the quiet blocks before the first touch; none if there is no loud block
+    lead = 0
+    if not levels.quiet.all():
+        lead = int(np.argmin(levels.quiet))
     if lead < _AT_REST:
         return fit if fit_stands_out else None
     rest_position = levels.position[:lead]
@@ -330,8 +334,9 @@ def _best_fit(position: Floats, level: Floats, deviation: float) -> tuple[_Fit, 
         return constant, 1
     slope, mean_level = np.polyfit(position - position.mean(), level, 1)
     line = _Fit(float(mean_level - slope * position.mean()), float(slope))
+    exponential = _exponential(position, level)
     candidates = [(constant, 1)]
-    for drift, parameters in ((line, 2), (_exponential(position, level), 3)):
+    for drift, parameters in ((line, 2), (exponential, 3)):
         if _is_drift(drift.at(position), level):
             candidates.append((drift, parameters))
 
@@ -340,6 +345,7 @@ def _best_fit(position: Floats, level: Floats, deviation: float) -> tuple[_Fit, 
         fit, parameters = candidate
         residual = level - fit.at(position)
         count = len(residual)
+        # a part of the noise is added, so that levels which a curve meets by chance do not decide
         variance = residual @ residual / count + (0.1 * deviation) ** 2
         return float(count * np.log(variance) + _PENALTY * parameters * np.log(count))
 

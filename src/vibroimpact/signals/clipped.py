@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.arrays import Bools
-from vibroimpact.signals.record import Record
+from vibroimpact.signals.record import Record, recorded_samples
 
 _LEAST_STEPS = 3.0
 """Steps of a converter by which a cut peak rises above its neighbours, and a round one does not."""
@@ -37,7 +37,7 @@ def clipped_samples(record: Record) -> Bools:
     >>> int(clipped_samples(wave).sum()), np.flatnonzero(clipped_samples(cut)).tolist()
     (0, [15, 16, 17, 36, 37, 38])
     """
-    recorded = record.value if record.recorded is None else record.recorded
+    recorded = recorded_samples(record)
     clipped = np.zeros(len(recorded), dtype=bool)
     levels = np.unique(recorded)
     if len(levels) < 2 or not np.isfinite(recorded).all():
@@ -51,9 +51,12 @@ def clipped_samples(record: Record) -> Bools:
         in_runs = at_extreme & (neighbours[:-2] | neighbours[2:])
         if not (in_runs.any() or np.count_nonzero(at_extreme) >= _LEAST_IN_ALL):
             continue
-        # the steps up to the extreme and down from it
-        jumps = np.abs(np.diff(side))[np.flatnonzero(at_extreme[1:] != at_extreme[:-1])]
+        # The steps up to the extreme and down from it. A signal that turns there on its own does so
+        # in steps of the converter, and one that is cut off arrives fast.
+        to_extreme = at_extreme[1:] != at_extreme[:-1]
+        jumps = np.abs(np.diff(side))[to_extreme]
         next_lower = np.unique(side)[-2]
-        if len(jumps) and max(jumps.max(), side.max() - next_lower) > _LEAST_STEPS * converter_step:
+        gap = side.max() - next_lower
+        if len(jumps) and max(jumps.max(), gap) > _LEAST_STEPS * converter_step:
             clipped |= at_extreme
     return clipped

@@ -107,20 +107,18 @@ def delay_between(
     correlations = _OVERSAMPLING * fft.irfft(cross_spectrum, _OVERSAMPLING * length)
     largest_lag = min(int(most * rate * _OVERSAMPLING), _OVERSAMPLING * length // 2 - 1)
     lags = np.arange(-largest_lag, largest_lag + 1)
-    best_lag = int(lags[np.argmax(np.abs(correlations[:, lags]).sum(axis=0))])
+    together = np.abs(correlations[:, lags]).sum(axis=0)
+    best_lag = int(lags[np.argmax(together)])
     polarity = np.where(correlations[:, best_lag] < 0.0, -1.0, 1.0)
 
-    time = _top_near(
-        best_lag / (_OVERSAMPLING * rate), weights * (polarity @ cross_spectrum), frequency, rate
-    )
+    # from there on between the lags, with the signs that the signals have at it
+    time_of_lag = best_lag / (_OVERSAMPLING * rate)
+    upright_spectrum = weights * (polarity @ cross_spectrum)
+    time = _top_near(time_of_lag, upright_spectrum, frequency, rate)
     turn = np.exp(2j * np.pi * frequency * time)
     correlation = (cross_spectrum @ (weights * turn)).real
-    return Delay(
-        time,
-        polarity,
-        polarity * correlation,
-        correlation * later_norm / np.maximum(earlier_norm, 1e-300),
-    )
+    gain = correlation * later_norm / np.maximum(earlier_norm, 1e-300)
+    return Delay(time, polarity, polarity * correlation, gain)
 
 
 def _top_near(time: float, spectrum: Complex, frequency: Floats, rate: float) -> float:
@@ -134,7 +132,9 @@ def _top_near(time: float, spectrum: Complex, frequency: Floats, rate: float) ->
         terms = spectrum * np.exp(turn_rate * time)
         slope = float((turn_rate * terms).real.sum())
         curvature = float((turn_rate**2 * terms).real.sum())
-        step = -slope / curvature if curvature < 0.0 else 0.0
+        step = 0.0
+        if curvature < 0.0:  # else the nearest zero of the slope is no top
+            step = -slope / curvature
         time += float(np.clip(step, -longest_step, longest_step))
         if abs(step) * rate < 1e-12:
             break

@@ -68,7 +68,9 @@ class Feature:
             power = f"({signal})^{self.degree}"
         else:
             power = f"{signal}^{self.degree}"
-        return power if self.unit == "1" else f"{power} {self.unit}"
+        if self.unit == "1":
+            return power
+        return f"{power} {self.unit}"
 
 
 @dataclass(frozen=True)

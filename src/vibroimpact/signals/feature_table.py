@@ -131,7 +131,9 @@ def feature_table(
             "(signals, samples)"
         )
     check_settings(threshold, dead_time)
-    wanted = {name: find_feature(name) for name in (signal_features() if names is None else names)}
+    if names is None:
+        names = list(signal_features())
+    wanted = {name: find_feature(name) for name in names}
     count, samples = signals.shape
     numbers, reasons = _empty_table(count, len(wanted))
     offset = np.zeros(count)

@@ -67,12 +67,17 @@ def from_onset(
         raise InputError(f"{before:g} s before the onset do not lie in a window of {duration:g} s")
     clean = without_baseline(record)
     packets = find_packets(clean, threshold)
-    onset = int(packets.onset[0]) if len(packets.onset) else 0
+    onset = 0
+    if len(packets.onset):
+        onset = int(packets.onset[0])
     first = onset - round(before * record.rate)
+    recorded = clean.recorded
+    if recorded is not None:
+        recorded = _window(recorded, first, samples)
     return replace(
         clean,
         value=_window(clean.value, first, samples),
-        recorded=None if clean.recorded is None else _window(clean.recorded, first, samples),
+        recorded=recorded,
         start=clean.start + first / clean.rate,
     )
 

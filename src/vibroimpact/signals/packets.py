@@ -105,7 +105,9 @@ def find_packets(
         return packets_in(no_samples, no_samples, np.ones(1), record.rate, dead_time)
     value = without_baseline(record).value[None]
     envelope = hilbert_envelope(value)
-    level = THRESHOLD * float(envelope.max()) if threshold is None else threshold
+    level = threshold
+    if level is None:
+        level = THRESHOLD * float(envelope.max())
     return packets_in(value, envelope, np.array([level]), record.rate, dead_time)
 
 
@@ -139,14 +141,11 @@ def packet_records(
     records = []
     for first, last in zip(packets.first.tolist(), packets.last.tolist(), strict=True):
         samples = slice(first, last + 1)
-        records.append(
-            replace(
-                clean,
-                value=clean.value[samples],
-                recorded=None if clean.recorded is None else clean.recorded[samples],
-                start=clean.start + first / clean.rate,
-            )
-        )
+        recorded = clean.recorded
+        if recorded is not None:
+            recorded = recorded[samples]
+        start = clean.start + first / clean.rate
+        records.append(replace(clean, value=clean.value[samples], recorded=recorded, start=start))
     return records
 
 

@@ -97,6 +97,13 @@ class Record:
         return self.start + np.arange(len(self.value)) / self.rate
 
 
+def recorded_samples(record: Record) -> Floats:
+    """Return the samples of a record as they were recorded, with its baseline."""
+    if record.recorded is None:
+        return record.value
+    return record.recorded
+
+
 def real_numbers(values: object) -> NDArray[Any]:
     """Return real numbers of any type as an array of that type.
 

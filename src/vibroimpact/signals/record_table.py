@@ -18,13 +18,15 @@ from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.feature_table import features_at_rest
 from vibroimpact.signals.packets import DEAD_TIME, check_settings
 from vibroimpact.signals.reasons import Reason
-from vibroimpact.signals.record import Record
+from vibroimpact.signals.record import Record, Removed, recorded_samples
 from vibroimpact.signals.registry import find_feature, signal_features
 
 _SAMPLES_AT_ONCE = 2**20
 """Samples that are put together for one table."""
 _ROWS_AT_ONCE = 1000
 """Rows that are written at once."""
+_NOTHING = Removed(0.0, 0.0)
+"""The baseline of a record from which none was removed."""
 
 
 @dataclass(frozen=True)
@@ -83,19 +85,21 @@ class RecordTable:
                 by_reason.setdefault(int(code), []).append(name)
         sentences = []
         for code, names in by_reason.items():
-            which = "all" if len(names) == len(self.names) else " ".join(names)
+            which = " ".join(names)
+            if len(names) == len(self.names):
+                which = "all"
             sentences.append(f"{Reason(code).text}: {which}")
         return "; ".join(sentences)
 
     @property
     def offset(self) -> list[float]:
         """Mean of the baseline that was removed from each record, in its unit."""
-        return [0.0 if record.removed is None else record.removed.offset for record in self.records]
+        return [(record.removed or _NOTHING).offset for record in self.records]
 
     @property
     def drift(self) -> list[float]:
         """Span of the baseline that was removed from each record, in its unit."""
-        return [0.0 if record.removed is None else record.removed.drift for record in self.records]
+        return [(record.removed or _NOTHING).drift for record in self.records]
 
     @property
     def numbers(self) -> list[int]:
@@ -133,7 +137,7 @@ class RecordTable:
             text = StringIO()
             writer = csv.writer(text, lineterminator="\n")
             for row, record in enumerate(self.records[first : first + _ROWS_AT_ONCE], first):
-                values = self.values[row].tolist()
+                cells = [_cell(value) for value in self.values[row].tolist()]
                 writer.writerow(
                     (
                         record.source,
@@ -142,7 +146,7 @@ class RecordTable:
                         record.start,
                         record.rate,
                         record.unit,
-                        *("" if math.isnan(value) else repr(value) for value in values),
+                        *cells,
                         repr(offset[row]),
                         repr(drift[row]),
                         self.lacking(row),
@@ -170,6 +174,10 @@ def column_name(name: str) -> str:
     if feature.degree or feature.unit == "1":
         return name
     return f"{name}_{feature.unit.replace('/', '_')}"
+
+
+def _cell(value: float) -> str:
+    return "" if math.isnan(value) else repr(value)
 
 
 def record_table(
@@ -207,16 +215,16 @@ def record_table(
     >>> table.values.round(2).tolist(), table.lacking(1)
     ([[0.71, 1.5], [nan, nan]], 'there are no samples: all')
     """
-    wanted = {name: find_feature(name) for name in (signal_features() if names is None else names)}
+    if names is None:
+        names = list(signal_features())
+    wanted = {name: find_feature(name) for name in names}
     check_settings(threshold, dead_time)
     rows: list[Record] = []
     values = [np.empty((0, len(wanted)))]
     reasons = [np.empty((0, len(wanted)), dtype=np.int8)]
     for block in _blocks(without_baseline(record) for record in records):
         signals = np.array([record.value for record in block])
-        recorded = np.array(
-            [record.value if record.recorded is None else record.recorded for record in block]
-        )
+        recorded = np.array([recorded_samples(record) for record in block])
         block_values, block_reasons = features_at_rest(
             signals, recorded, block[0].rate, wanted, threshold, dead_time
         )

@@ -99,9 +99,11 @@ def aligned(
             if turn > 0:  # the mean of the others
                 common = _mean(sounds, np.where(np.arange(count) == touch, 0.0, gain))
             slope = fft.irfft(1j * omega * fft.rfft(common), padded_length)
-            unclipped = window * np.prod(
-                [_moved(samples, by) for samples, by in zip(known, shift, strict=True)], axis=0
-            )
+            # the common sound is known only where all sounds are
+            known_as_shifted = [
+                _moved(samples, by) for samples, by in zip(known, shift, strict=True)
+            ]
+            unclipped = window * np.prod(known_as_shifted, axis=0)
             noise = _noise_variance(sounds, gain, touch, slope, unclipped)
             energy = np.maximum(span.correlation(window, common**2), _TINY)
             match = np.maximum(span.correlation(window * sounds[touch], common), 0.0)
@@ -114,7 +116,8 @@ def aligned(
             sounds[touch] = fft.irfft(turned, padded_length)
             gain[touch] = _gain(sounds[touch], common, window)
     # what the sounds have in common is where they were found, in the mean
-    return sample + shift - shift @ gain**2 / max(float(gain @ gain), _TINY), deviation
+    mean_shift = shift @ gain**2 / max(float(gain @ gain), _TINY)
+    return sample + shift - mean_shift, deviation
 
 
 class _Span(NamedTuple):
@@ -179,17 +182,21 @@ class _Span(NamedTuple):
 def _most_likely(log_likelihood: Floats, lags: Floats, span: _Span) -> tuple[float, float]:
     """Return the most likely lag and its standard deviation, in samples."""
     top = int(np.clip(np.argmax(log_likelihood), 1, len(lags) - 2))
+    peak = slice(top - 1, top + 2)
     # a parabola through the highest value and its neighbours
-    earlier, highest, later = log_likelihood[top - 1 : top + 2]
+    earlier, highest, later = log_likelihood[peak]
     curvature = max(float(2.0 * highest - earlier - later), _TINY)
     offset = float(np.clip(0.5 * (later - earlier) / curvature, -1.0, 1.0))
     lag = lags[top] + offset / span.lags_per_sample
-    # the variance is that of this peak, or what lies in others
+    # a parabola of the logarithm is a normal distribution, whose variance is the inverse curvature
+    own_variance = 1.0 / curvature / span.lags_per_sample**2
+    own_variance = min(own_variance, float(span.reach) ** 2)
+    # likelihoods that are left beside this peak are those of other periods of the sound
     likelihood = np.exp(log_likelihood - highest)
-    likelihood[top - 1 : top + 2] = 0.0
-    others = float(likelihood @ (lags - lag) ** 2 / (1.0 + likelihood.sum()))
-    own = min(1.0 / curvature / span.lags_per_sample**2, float(span.reach) ** 2)
-    return lag, np.sqrt(max(own, others) + _RESOLUTION**2)
+    likelihood[peak] = 0.0
+    second_moment = likelihood @ (lags - lag) ** 2
+    variance_of_others = float(second_moment / (1.0 + likelihood.sum()))
+    return lag, np.sqrt(max(own_variance, variance_of_others) + _RESOLUTION**2)
 
 
 def _gain(sound: Floats, common: Floats, window: Floats) -> float:
@@ -218,18 +225,31 @@ def _noise_variance(
 
     It is that of what is left of its sound without the common one, where the slope of that is.
     """
+    sound = sounds[touch]
     common = _mean(sounds, gain)
-    residual = window * (sounds[touch] - common * _gain(sounds[touch], common, window))
-    slope_power = np.abs(fft.rfft(window * slope)) ** 2
+    residual = window * (sound - common * _gain(sound, common, window))
     residual_power = np.abs(fft.rfft(residual)) ** 2
+    slope_power = np.abs(fft.rfft(window * slope)) ** 2
     # the noise that moves the sound is that in the band of its slope
-    power = 2.0 * float(residual_power @ slope_power) / len(window) / float(window @ window)
-    variance = power / max(float(slope**2 @ window), _TINY)
+    in_band = 2.0 * float(residual_power @ slope_power)
+    power = in_band / len(window) / float(window @ window)
+    slope_energy = float(slope**2 @ window)
+    variance = power / max(slope_energy, _TINY)
     # what is common is in part this sound, noise and all
     share = float(gain[touch] ** 2) / max(float(gain @ gain), _TINY)
+    left_by_mean = max(1.0 - share, 0.1)
     # of the few numbers that a sound has in its own band, its size and time are fitted
-    samples = float((window**2).sum() ** 2 / (window**4).sum())
-    freedom = 2.0 * samples / len(window) * float(slope_power.sum()) ** 2
-    freedom /= max(float(slope_power @ slope_power), _TINY)
+    freedom = _freedom(window, slope_power)
     left_by_fit = max(1.0 - 2.0 / max(freedom, _TINY), 0.25)
-    return max(variance / (max(1.0 - share, 0.1) * left_by_fit), _TINY)
+    return max(variance / (left_by_mean * left_by_fit), _TINY)
+
+
+def _freedom(window: Floats, power: Floats) -> float:
+    """Return how many independent numbers a windowed signal with a power spectrum has.
+
+    A window of unequal weights has as few samples as an even one with the same sums of squares and
+    fourth powers; so it is with the lines of the spectrum.
+    """
+    samples = float((window**2).sum() ** 2 / (window**4).sum())
+    freedom = 2.0 * samples / len(window) * float(power.sum()) ** 2
+    return freedom / max(float(power @ power), _TINY)

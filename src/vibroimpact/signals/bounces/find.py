@@ -173,9 +173,9 @@ def find_bounces(record: Record, contact: float = 0.0) -> Bounces:
         value, record.rate, touches.sample[chain], record.blur, clipped_samples(record)
     )
     if not np.all(np.diff(bounce_sample) > max(contact * record.rate, 0.0)):
+        within = "the contact" if contact else "their sounds"
         raise InputError(
-            "the last bounces follow each other within "
-            f"{'the contact' if contact else 'their sounds'}; end the record sooner"
+            f"the last bounces follow each other within {within}; end the record sooner"
         )
     return Bounces(
         record=record,
@@ -306,6 +306,7 @@ def _chains_by_chance(chain: Floats, touch_count: int, duration: float) -> float
     interval = np.diff(chain)
     change = np.diff(np.log(interval[1:] / interval[:-1]))
     scatter = float(np.hypot(np.sqrt(np.mean(change**2)), _LEAST_SCATTER))
-    # in a span of two standard deviations to either side, by the mean rate of touches
+    # in a span of two standard deviations to either side, by the mean rate of touches: a Poisson
+    # process has at least one there with the probability 1 - exp(-rate span)
     hit = -np.expm1(-touch_count / duration * 4.0 * scatter * interval[2:])
     return comb(touch_count, 3) * float(np.prod(hit))

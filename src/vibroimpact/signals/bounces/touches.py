@@ -131,7 +131,8 @@ def find_touches(value: Floats, rate: float, blur: float = 0.0) -> Touches:
     energy_before = np.concatenate([[0.0], np.cumsum(value**2)])
     # over the window that begins at each sample
     power = energy_before[window:] - energy_before[:-window]
-    floor = (_FLOOR_OF_CODED if blur else _FLOOR) * float(power.max())
+    relative_floor = _FLOOR_OF_CODED if blur else _FLOOR
+    floor = relative_floor * float(power.max())
     if not floor > 0.0:
         return no_touches
     level = np.log(np.maximum(power, floor))
@@ -144,9 +145,9 @@ def find_touches(value: Floats, rate: float, blur: float = 0.0) -> Touches:
     peaks, _ = find_peaks(rise, height=threshold, distance=window, plateau_size=1)
     clearest = np.argsort(-rise[peaks], kind="stable")[:MOST]
     peaks = np.sort(peaks[clearest])
-    begins = np.array(
-        [_change_point(value, int(peak) + window, window) for peak in peaks], dtype=np.intp
-    )
+    # the power rises most where one window ends and the next begins
+    change_points = [_change_point(value, int(peak) + window, window) for peak in peaks]
+    begins = np.array(change_points, dtype=np.intp)
     click = np.array([_is_click(value, int(begin), window) for begin in begins], dtype=bool)
     return Touches(begins, rise[peaks], click, threshold)
 

@@ -174,12 +174,14 @@ class Spectra(ABC):
         """
         decay = np.exp(tones[:, 0])
         s = -decay + 1j * self.step * tones[:, 1]
+        # a real tone has a pole and its conjugate
         upper, upper_slope = self.transform(s)
         lower, lower_slope = self.transform(s.conj())
         columns = _by_amplitude(upper, lower)
         # derivatives of s and of its conjugate
+        turn = 1j * self.step
         by_log_decay = _by_amplitude(-decay * upper_slope, -decay * lower_slope)
-        by_frequency = _by_amplitude(1j * self.step * upper_slope, -1j * self.step * lower_slope)
+        by_frequency = _by_amplitude(turn * upper_slope, -turn * lower_slope)
         slopes = np.stack([by_log_decay, by_frequency], axis=-1)
         unit = self.unit[:, None, None]
         return _parts(columns / unit), _parts(slopes / unit[..., None])
@@ -268,10 +270,12 @@ def tones_in(bins: Spectra) -> Tones:
     and the bins where it may lie (Chen and Chen 2008, Biometrika 95:759).
     """
     rows = bins.rows
-    channels = len(bins.value)
-    penalty = (2 + 2 * channels) * np.log(rows.size) + 2.0 * np.log(len(bins.omega))
+    # a tone has a decay and a frequency, and a complex amplitude in each channel
+    parameters = 2 + 2 * len(bins.value)
+    penalty = parameters * np.log(rows.size) + 2.0 * np.log(len(bins.omega))
     best = _fit(bins, rows, np.zeros((0, 2)))
-    while len(best.tones) < min(_MOST_TONES, len(bins.omega) // 6):
+    most = min(_MOST_TONES, len(bins.omega) // 6)
+    while len(best.tones) < most:
         further = _further_tone(bins, best)
         fit = _fit(bins, rows, np.concatenate([best.tones, [further]]))
         if best.misfit(len(rows)) - fit.misfit(len(rows)) < penalty:
@@ -348,7 +352,8 @@ def _fit(bins: Spectra, rows: Floats, start: Floats) -> _Fit:
     tones = start
     covariance = np.zeros((2 * tone_count, 2 * tone_count))
     noise = noise_of(tones)
-    for _ in range(_ROUNDS if tone_count else 0):
+    rounds = _ROUNDS if tone_count else 0
+    for _ in range(rounds):
 
         def model(parameters: Floats, noise: Floats = noise) -> tuple[Floats, Floats]:
             solved = _solve_amplitudes(bins, rows, smooth, parameters.reshape(-1, 2))
@@ -360,6 +365,7 @@ def _fit(bins: Spectra, rows: Floats, start: Floats) -> _Fit:
         tones = fit.parameters.reshape(-1, 2)
         weighed_by = noise
         noise = noise_of(tones)
+        # the covariance of the fit goes with the noise that it was weighed by
         covariance = bins.covariance(fit, model) * float(np.mean(noise**2 / weighed_by**2))
         change = noise / weighed_by
         if np.ptp(change) < _SAME_NOISE * np.max(change):  # channels weigh as they did

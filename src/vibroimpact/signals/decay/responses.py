@@ -80,11 +80,13 @@ class Lines(Spectra):
             # in the middle of the half-power bandwidths with most energy: what rings there peaks in
             # one of them
             width = max(1, int(ratio * float(self.omega.mean()) / self.step))
-            in_widths = np.add.reduceat(energy, np.arange(0, len(energy), width))
-            strongest = np.argsort(in_widths)[-_TRIED:]
-            omega = self.omega[np.minimum(strongest * width + width // 2, len(energy) - 1)]
+            firsts = np.arange(0, len(energy), width)
+            in_widths = np.add.reduceat(energy, firsts)
+            strongest = firsts[np.argsort(in_widths)[-_TRIED:]]
+            omega = self.omega[np.minimum(strongest + width // 2, len(energy) - 1)]
             tone, _ = self.transform((1j - ratio) * omega)
             shape = tone / self.unit[:, None]
+            # the energy that the best amplitude of each tone takes from the residual
             match = np.sum(np.abs(shape.conj().T @ residual) ** 2, axis=1)
             power = match / np.sum(np.abs(shape) ** 2, axis=0)
             peak = int(np.argmax(power))
@@ -164,17 +166,20 @@ def _spread(noise: Complex, response: Complex, floor: Floats) -> Floats:
     Noise and responses are those of all channels, (bins, S). The variance is a constant and a
     multiple of the square of the response, fitted without what stands out.
     """
-    scale = np.maximum(np.sqrt(np.mean(np.abs(noise) ** 2, axis=0)), floor)
+    rms = np.sqrt(np.mean(np.abs(noise) ** 2, axis=0))
+    scale = np.maximum(rms, floor)
     noise_square = np.mean(np.abs(noise / scale) ** 2, axis=1)
     response_square = np.mean(np.abs(response / scale) ** 2, axis=1)
     columns = np.stack([np.ones_like(response_square), response_square], axis=1)
     constant = float(np.median(noise_square))
     multiple = float(np.median(noise_square / response_square))
     variance = constant + multiple * response_square
-    for _ in range(_ROUNDS):  # a square varies by as much as its mean
+    for _ in range(_ROUNDS):
         usual = noise_square < _OUTSTANDING * variance
+        # a square varies by as much as its mean, which is the weight
         weighed_columns = (columns / variance[:, None])[usual]
-        shares, _ = optimize.nnls(weighed_columns, (noise_square / variance)[usual])
+        weighed_squares = (noise_square / variance)[usual]
+        shares, _ = optimize.nnls(weighed_columns, weighed_squares)
         if not shares.any():
             break
         variance = columns @ shares

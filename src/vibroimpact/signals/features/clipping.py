@@ -19,8 +19,10 @@ The level of a force between impacts is no end of a converter's range.
 
 def _clipped_part(block: Block) -> Floats:
     clipped_part = np.zeros(len(block.value))
-    # without a drift samples at the end of a converter's range would no longer be the same
-    recorded = block.value if block.recorded is None else block.recorded
+    recorded = block.value
+    if block.recorded is not None:
+        # without a drift samples at the end of a converter's range would no longer be the same
+        recorded = block.recorded
     rest = _AT_REST * block.peak[:, None]
     if block.samples < _RUN:
         return clipped_part[:, None]

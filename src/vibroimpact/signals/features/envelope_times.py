@@ -49,7 +49,8 @@ def _fall(to_come: Floats, level: float) -> Floats:
     samples = to_come.shape[1]
     following = np.count_nonzero(to_come >= level, axis=1)
     begin = to_come[signal, np.maximum(following - 1, 0)]
-    end = np.where(following < samples, to_come[signal, np.minimum(following, samples - 1)], 0.0)
+    end = to_come[signal, np.minimum(following, samples - 1)]
+    end = np.where(following < samples, end, 0.0)
     fall = following - 1 + (begin - level) / (begin - end)
     return np.asarray(np.where(np.isnan(begin), np.nan, fall))
 

@@ -79,7 +79,8 @@ def _extrema(value: Floats, least_step: Floats) -> tuple[Indices, Indices]:
     turns = np.zeros(len(moving), dtype=bool)
     turns[:-1] = rises[1:] != rises[:-1]
     # from one signal to the next there is no turn
-    last_of_signal = np.searchsorted(moving, samples * np.arange(1, len(value))) - 1
+    ends_of_signals = samples * np.arange(1, len(value))
+    last_of_signal = np.searchsorted(moving, ends_of_signals) - 1
     turns[last_of_signal[last_of_signal >= 0]] = False
     extrema = moving[turns] + 1
     is_maximum = rises[turns]

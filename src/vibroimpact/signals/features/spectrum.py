@@ -22,7 +22,9 @@ def _spectral_features(block: Block) -> Floats:
     # of a signal that is zero throughout there is no spectrum
     silent = np.isnan(centroid)
 
-    bandwidth = np.sqrt(np.maximum(share @ frequency**2 - centroid**2, 0.0))
+    # rounding may make the variance of a pure tone negative
+    variance = np.maximum(share @ frequency**2 - centroid**2, 0.0)
+    bandwidth = np.sqrt(variance)
     roll_off_bin = np.count_nonzero(np.cumsum(share, axis=1) < _ROLL_OFF, axis=1)
     roll_off = frequency[np.minimum(roll_off_bin, len(frequency) - 1)]
     roll_off = np.where(silent, np.nan, roll_off)
@@ -31,14 +33,15 @@ def _spectral_features(block: Block) -> Floats:
     cut_off = _cut_off(amplitude, frequency)
 
     log_share = np.log(share + _TINY)
+    # the arithmetic mean of the shares is 1 over their number
     flatness = np.exp(log_share.mean(axis=1)) * len(frequency)
-    entropy = np.maximum(-np.einsum("ij,ij->i", share, log_share), 0.0) / np.log(len(frequency))
+    entropy = np.maximum(-np.einsum("ij,ij->i", share, log_share), 0.0)
+    relative_entropy = entropy / np.log(len(frequency))
 
     frequencies = [centroid, amplitude_centroid, bandwidth, roll_off, peak_frequency, cut_off]
-    shapes = [flatness, entropy]
-    return np.concatenate(
-        [np.stack(frequencies, axis=1) * block.rate, np.stack(shapes, axis=1)], axis=1
-    )
+    with_unit = np.stack(frequencies, axis=1) * block.rate
+    without_unit = np.stack([flatness, relative_entropy], axis=1)
+    return np.concatenate([with_unit, without_unit], axis=1)
 
 
 def _cut_off(amplitude: Floats, frequency: Floats) -> Floats:
@@ -52,7 +55,9 @@ def _cut_off(amplitude: Floats, frequency: Floats) -> Floats:
     following = np.minimum(last + 1, len(frequency) - 1)
     above = np.log(amplitude[signal, last] / level[:, 0] + _TINY)
     below = np.log(amplitude[signal, following] / level[:, 0] + _TINY)
-    cut_off = frequency[last] + (frequency[following] - frequency[last]) * above / (above - below)
+    step = frequency[following] - frequency[last]
+    cut_off = frequency[last] + step * above / (above - below)
+    # above that level up to the end of the band, it is not seen
     return np.asarray(np.where(last < following, cut_off, np.nan))
 
 

@@ -78,7 +78,9 @@ def deconvolve(matrix: Floats, record: Floats, roughness: Floats | None = None) 
 
     nodes = matrix.shape[1]
     differences = np.diff(np.eye(nodes + 6), 3, axis=0)[:, 3:-3]  # of a force that is zero outside
-    rough = differences if roughness is None else differences / roughness[:, None]
+    rough = differences
+    if roughness is not None:
+        rough = differences / roughness[:, None]
     normal = matrix.T @ matrix
     smooth = rough.T @ rough
     projected = matrix.T @ record

@@ -78,7 +78,8 @@ def gauss_newton(
         change = slopes @ step
         converged = bool(change @ change < tolerance**2 * len(step))
         # a part of a step that is small enough is not worth another model
-        for _ in range(1 if converged else _HALVINGS):
+        trials = 1 if converged else _HALVINGS
+        for _ in range(trials):
             new_residual, new_slopes = model(parameters + step)
             if new_residual @ new_residual < residual @ residual:
                 break

@@ -96,7 +96,9 @@ def _records(file: FileIO, path: Path) -> Iterator[Record]:
         doubts = (*faults, _loss_doubt(stream))
         blur = _BLUR
     for number, channel in enumerate(value):
-        name = path.stem if len(value) == 1 else f"{path.stem} {number + 1}"
+        name = path.stem
+        if len(value) > 1:
+            name = f"{path.stem} {number + 1}"
         yield Record(name, channel, rate, "1", doubts=doubts, blur=blur)
 
 
@@ -184,7 +186,9 @@ def _cause(error: Exception) -> str:
 def _loss_doubt(stream: AudioStream) -> str:
     """Return the doubt about sound that is coded with losses."""
     bit_rate = stream.codec_context.bit_rate or stream.bit_rate
-    size = f" at {bit_rate / 1000.0:.0f} kbit/s" if bit_rate else ""
+    size = ""
+    if bit_rate:
+        size = f" at {bit_rate / 1000.0:.0f} kbit/s"
     codec = f"{stream.codec_context.codec.canonical_name}{size}"
     return (
         f"its sound is coded with losses ({codec}): what begins suddenly is spread over some "

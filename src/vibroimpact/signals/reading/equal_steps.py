@@ -95,7 +95,9 @@ def rate_of(time: Floats, lines: Sequence[int] | None = None) -> float:
             f"{time[earlier] - time[later]:.3g} s before {above}, at {time[later]:.9g} s; {remedy}"
         )
     if not (step > 0.0 and np.isfinite(step)):
-        remedy = _THEY_MUST if lines is None else "write them with more digits"
+        remedy = _THEY_MUST
+        if lines is not None:
+            remedy = "write them with more digits"
         raise InputError(f"the times do not rise: all are {time[0]:.9g} s; {remedy}")
     shift = np.abs(time - (time[0] + step * np.arange(len(time)))) / step
     worst = int(np.argmax(shift))
@@ -185,11 +187,9 @@ def _without_repeated(
     left_out: str,
 ) -> Sampled:
     """Return channels at equal steps without samples that were written twice, with that doubt."""
-    once = at_equal_steps(
-        time[~twice],
-        [value[~twice] for value in values],
-        None if lines is None else np.asarray(lines)[~twice].tolist(),
-    )
+    if lines is not None:
+        lines = np.asarray(lines)[~twice].tolist()
+    once = at_equal_steps(time[~twice], [value[~twice] for value in values], lines)
     doubts = [f"{left_out}; {doubt}" if doubt else left_out for doubt in once.doubts]
     return once._replace(doubts=tuple(doubts))
 
@@ -290,6 +290,7 @@ def _to_significant_digits(time: Floats, regular: Floats) -> tuple[int, float] |
 
     Programs do that which write %.6g.
     """
+    # zero has all digits, but no power of ten
     is_zero = time == 0.0
     power = np.floor(np.log10(np.where(is_zero, 1.0, np.abs(time))))
     for digits in range(2, _MOST_DIGITS + 1):
@@ -299,13 +300,18 @@ def _to_significant_digits(time: Floats, regular: Floats) -> tuple[int, float] |
             shift = _LARGEST_SHIFT * (regular[1] - regular[0])
             largest = np.maximum(_ROUNDED * last_digit, shift)
             is_rounded = np.abs(time - regular) <= largest
-            return (digits, float(last_digit.max())) if np.all(is_rounded | is_zero) else None
+            if np.all(is_rounded | is_zero):
+                return digits, float(last_digit.max())
+            return None
     return None
 
 
 def _sample(index: int, lines: Sequence[int] | None) -> str:
     """Return the name of a sample in messages."""
-    return f"sample {index + 1}" if lines is None else f"sample {index + 1} (line {lines[index]})"
+    sample = f"sample {index + 1}"
+    if lines is None:
+        return sample
+    return f"{sample} (line {lines[index]})"
 
 
 def written_twice(
@@ -349,7 +355,9 @@ def _resampled(time: Floats, values: Sequence[Floats]) -> Sampled:
         by_splines = np.asarray(CubicSpline(time, value)(equal_steps))
         difference = by_splines - np.interp(equal_steps, time, value)
         deviation = float(np.std(value))
-        error = float(np.sqrt(np.mean(difference**2))) / deviation if deviation else 0.0
+        error = 0.0
+        if deviation:
+            error = float(np.sqrt(np.mean(difference**2))) / deviation
         resampled.append(by_splines)
         doubts.append(
             f"its times jitter by {jitter:.2g} % of a step; it is resampled to equal steps, "

@@ -94,10 +94,17 @@ def _signals(file: h5py.File) -> Iterator[tuple[h5py.Dataset, float, float]]:
             time = second * read_array(scale).astype(float)
             stated_rate = data.attrs.get("rate_Hz", data.parent.attrs.get("rate_Hz"))
             try:
-                rate = rate_of(time) if stated_rate is None else float(stated_rate)
+                rate = _rate(time, stated_rate)
             except InputError:  # a history at unequal steps is no signal
                 continue
             yield data, rate, float(time[0])
+
+
+def _rate(time: Floats, stated_rate: Any) -> float:
+    """Return the rate of samples as the file states it, or else by their times."""
+    if stated_rate is None:
+        return rate_of(time)
+    return float(stated_rate)
 
 
 def _seconds(unit: str) -> float | None:
@@ -139,8 +146,12 @@ def _records(data: h5py.Dataset, rate: float, start: float) -> Iterator[Record]:
 def _without_fill(value: Floats) -> Floats:
     """Return a signal without NaN at its end, which fills the place of a shorter one."""
     known = np.flatnonzero(~np.isnan(value))
-    return value[: known[-1] + 1 if known.size else 0]
+    if not known.size:
+        return value[:0]
+    return value[: known[-1] + 1]
 
 
 def _text(value: Any) -> str:
-    return value.decode("utf-8", "replace") if isinstance(value, (bytes, np.bytes_)) else str(value)
+    if isinstance(value, (bytes, np.bytes_)):
+        return value.decode("utf-8", "replace")
+    return str(value)

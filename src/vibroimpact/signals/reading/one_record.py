@@ -66,7 +66,9 @@ def _no_channel(channel: str | None, names: list[str]) -> str:
     has = "it has no record"
     if names:
         has = f"it has {_listed(names)}.{did_you_mean(channel or '', names)}"
-    return has if channel is None else f"there is no channel {quoted(channel)}; {has}"
+    if channel is None:
+        return has
+    return f"there is no channel {quoted(channel)}; {has}"
 
 
 def _several(path: str | PathLike[str], channel: str | None, columns: str | None) -> str:
@@ -104,4 +106,6 @@ def is_named(record: Record, channel: str) -> bool:
 
 def _listed(names: list[str]) -> str:
     listed = ", ".join(quoted(name) for name in names[:_MOST_LISTED])
-    return f"{listed} and more" if len(names) > _MOST_LISTED else listed
+    if len(names) > _MOST_LISTED:
+        return f"{listed} and more"
+    return listed

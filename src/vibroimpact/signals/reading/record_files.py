@@ -73,7 +73,9 @@ def load_records(path: str | PathLike[str], columns: str | None = None) -> Itera
     """
     files = record_files(path)
     if columns is not None and not any(_is_table(file) for file in files):
-        tables = "there is none in this folder" if Path(path).is_dir() else "this is none"
+        tables = "this is none"
+        if Path(path).is_dir():
+            tables = "there is none in this folder"
         raise with_path(
             path,
             InputError(

@@ -158,13 +158,15 @@ def _response(
     response = _degree_of_freedom(function.response, function)
     reference = _degree_of_freedom(function.reference, None)
     coherence = _coherence(function, coherences)
+    if coherence is not None:
+        coherence = coherence[known]
     return FrequencyResponse(
         response,
         reference,
         frequency=function.frequency[known],
         value=np.asarray(factor * function.values[known], dtype=np.complex128),
         unit=unit,
-        coherence=None if coherence is None else coherence[known],
+        coherence=coherence,
         source=source,
         doubts=(doubt,) if doubt else (),
     )
@@ -253,7 +255,9 @@ def _degree_of_freedom(freedom: Freedom, function: FunctionOfFrequency | None) -
     number.
     """
     node = str(freedom.node) if freedom.node else ""
-    entity_and_node = f"{freedom.entity}:{node}" if freedom.entity and node else ""
+    entity_and_node = ""
+    if freedom.entity and node:
+        entity_and_node = f"{freedom.entity}:{node}"
     places = [name for name in (entity_and_node, freedom.entity, node) if name]
     names = list(places)
     if freedom.direction:

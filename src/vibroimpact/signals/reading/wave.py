@@ -58,7 +58,9 @@ def wave_records(path: Path) -> Iterator[Record]:
             for first in range(0, header.channels, together):
                 channels = range(first, min(first + together, header.channels))
                 for number, value in zip(channels, _samples(file, header, channels), strict=True):
-                    channel_name = name if header.channels == 1 else f"{name} {number + 1}"
+                    channel_name = name
+                    if header.channels > 1:
+                        channel_name = f"{name} {number + 1}"
                     # of floating-point numbers that are no sound
                     with np.errstate(over="ignore", invalid="ignore"):
                         value *= factor
@@ -121,8 +123,9 @@ def _full_scale(block: NDArray[np.uint8], header: WaveHeader) -> Floats:
         return (block[:, :, 0].astype(float) - 128.0) / 128.0
     # the next width that integers have
     size = next(size for size in (2, 4, 8) if size >= header.width)
-    whole = block if header.width == size else _padded(block, size, header.order)
-    return _numbers(whole, f"{header.order}i{size}") / 2.0 ** (8 * size - 1)
+    if header.width < size:
+        block = _padded(block, size, header.order)
+    return _numbers(block, f"{header.order}i{size}") / 2.0 ** (8 * size - 1)
 
 
 def _padded(block: NDArray[np.uint8], size: int, order: str) -> NDArray[np.uint8]:
