@@ -288,7 +288,8 @@ def _exact_quantities(observation: Observation) -> tuple[str, ...]:
 
     The position does not matter to it.
     """
-    return tuple("impulse" if name == "far impulse" else name for name in observation.quantities)
+    same_as = {"far impulse": "impulse"}
+    return tuple(same_as.get(name, name) for name in observation.quantities)
 
 
 def _remaining(falls: Falls, channel: Channel, observation: Observation) -> Floats:
@@ -304,11 +305,9 @@ def _remaining(falls: Falls, channel: Channel, observation: Observation) -> Floa
     count = len(properties)
     noise_variance = [np.mean(noise[name] ** 2) for name in observation.quantities]
     noisy_covariance = covariance[count:, count:] + np.diag(noise_variance)
-    explained = np.einsum(
-        "pk,kp->p",
-        covariance[:count, count:],
-        np.linalg.solve(noisy_covariance, covariance[count:, :count]),
-    )
+    with_measured = covariance[:count, count:]
+    coefficients = np.linalg.solve(noisy_covariance, covariance[count:, :count])
+    explained = np.einsum("pk,kp->p", with_measured, coefficients)
     variance = np.diagonal(covariance)[:count]
     with np.errstate(invalid="ignore", divide="ignore"):
         remaining = np.sqrt(np.clip(1.0 - explained / variance, 0.0, 1.0))

@@ -88,9 +88,12 @@ def bayes_error(
     """
     rng = np.random.default_rng(seed)
     falls = len(classes)
-    rock_numbers = np.arange(falls) if rocks is None else rocks
+    rock_numbers = rocks
+    if rock_numbers is None:
+        rock_numbers = np.arange(falls)
     chosen = rng.choice(falls, min(tested, falls), replace=False)
-    noisy = measured[chosen] + noise[chosen] * rng.standard_normal((len(chosen), measured.shape[1]))
+    draws = rng.standard_normal((len(chosen), measured.shape[1]))
+    noisy = measured[chosen] + noise[chosen] * draws
     names, codes = np.unique(classes, return_inverse=True)
     is_of_class = np.eye(len(names))[codes]  # (falls, classes)
     least_errors = []
@@ -99,12 +102,9 @@ def bayes_error(
     block = max(1, _PAIRS_IN_MEMORY // falls)
     for first in range(0, len(chosen), block):
         in_block = chosen[first : first + block]
-        weight = _likelihoods(
-            noisy[first : first + block],
-            measured,
-            noise,
-            rock_numbers[in_block, None] != rock_numbers,
-        )
+        # falls of the same rock would tell what is to be found out
+        of_other_rocks = rock_numbers[in_block, None] != rock_numbers
+        weight = _likelihoods(noisy[first : first + block], measured, noise, of_other_rocks)
         posterior = weight @ is_of_class / weight.sum(axis=1, keepdims=True)
         least_errors.append(1.0 - posterior.max(axis=1))
         wrong.append(posterior.argmax(axis=1) != codes[in_block])
@@ -112,7 +112,8 @@ def bayes_error(
         neighbours.append(weight.sum(axis=1) ** 2 / (weight**2).sum(axis=1))
     upper = float(np.concatenate(wrong).mean())
     # of a share, and not zero where none is wrong
-    standard_error = float(np.sqrt(max(upper * (1.0 - upper), 0.25 / len(chosen)) / len(chosen)))
+    variance = max(upper * (1.0 - upper), 0.25 / len(chosen))
+    standard_error = float(np.sqrt(variance / len(chosen)))
     return BayesError(
         lower=min(float(np.concatenate(least_errors).mean()), upper),
         upper=upper,

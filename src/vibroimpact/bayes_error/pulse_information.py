@@ -44,8 +44,9 @@ def _integrals() -> tuple[Floats, Floats]:
     u = np.arange(0.0, _LAST + _STEP, _STEP)
     # the cosine transform about the middle: the spectrum of a symmetric pulse is real
     phase_per_u = 2.0 * np.pi * (0.5 - time)
-    spectrum = np.cos(np.outer(u, phase_per_u)) @ force
-    slope = -np.sin(np.outer(u, phase_per_u)) @ (force * phase_per_u)
+    phase = np.outer(u, phase_per_u)
+    spectrum = np.cos(phase) @ force
+    slope = -np.sin(phase) @ (force * phase_per_u)
     integrands = np.stack([spectrum**2, u * spectrum * slope, (u * slope) ** 2])
     return u, np.asarray(cumulative_simpson(integrands, x=u, axis=1, initial=0.0))
 
@@ -88,7 +89,8 @@ def pulse_uncertainty(
         np.interp(limit, u, integral) for integral in integrals
     )
     scale = 4.0 * np.asarray(impulse) ** 2 / (noise_density * np.asarray(duration))
+    # the inverse of a symmetric matrix of two rows
     determinant = impulse_term * duration_term - mixed_term**2
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore"):  # without a band nothing is known
         variances = np.stack([duration_term, impulse_term]) / (scale * determinant)
     return np.asarray(np.sqrt(variances))

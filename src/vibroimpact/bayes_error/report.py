@@ -105,7 +105,9 @@ def error_interval(error: BayesError) -> str:
     high = f"{100.0 * error.upper:.{decimals}f}"
     if error.neighbours < _FEW:
         return f"at most {high} %"
-    return f"{high} %" if low == high else f"{low} to {high} %"
+    if low == high:
+        return f"{high} %"
+    return f"{low} to {high} %"
 
 
 def headline(bound: Bound) -> str:
@@ -239,10 +241,10 @@ def _write_map(bound: Bound, path: Path) -> None:
 
 def _summary(bound: Bound) -> dict[str, Any]:
     """Return the content of `summary.json`; a value that is not known is null."""
-    rows = [
-        {name: value if value == value else None for name, value in row.items()}
-        for row in bound_rows(bound)
-    ]
+    rows = []
+    for row in bound_rows(bound):
+        unknown = {name: None for name, value in row.items() if value != value}  # NaN
+        rows.append({**row, **unknown})
     return {
         "name": bound.name,
         "version": __version__,
