@@ -113,7 +113,9 @@ def acquired_of(
         If there is no record, no sensor of its name, its unit is another, rates differ, records do
         not overlap in time, one is constant or not finite, or the force is not one.
     """
-    all_records = list(records) if force is None else [*records, force]
+    all_records = list(records)
+    if force is not None:
+        all_records.append(force)
     _check_samples(all_records)
     rate = all_records[0].rate if all_records else 1.0
     # one rate for all, and no baselines
@@ -122,22 +124,21 @@ def acquired_of(
         [replace(sensor, rate=rate) for sensor in sensors], all_records[: len(records)]
     )
     if force is not None and force.unit != "N":
-        unit = "has no unit" if force.unit in ("", "1") else f"is in {force.unit}"
+        unit = f"is in {force.unit}"
+        if force.unit in ("", "1"):
+            unit = "has no unit"
         raise InputError(f"the record {quoted(force.name)} {unit}; the force of a hammer is in N")
     samples, start = on_common_time(all_records)
     _check_length(all_records, samples.shape[1])
     for record, values in zip(all_records, samples, strict=True):
         if np.ptp(values) == 0.0:
-            where = " where it overlaps with the others" if len(all_records) > 1 else ""
+            where = ""
+            if len(all_records) > 1:
+                where = " where it overlaps with the others"
             raise InputError(
                 f"the record {quoted(record.name)} is constant{where}; it has no onset"
             )
-    recorded, _ = on_common_time(
-        [
-            record if record.recorded is None else replace(record, value=record.recorded)
-            for record in all_records
-        ]
-    )
+    recorded, _ = on_common_time([_with_baseline(record) for record in all_records])
     removed = tuple(record.removed or Removed(0.0, 0.0) for record in all_records)
     motion = samples[: len(records)]
     if force is None:
@@ -190,6 +191,13 @@ def _check_samples(records: Sequence[Record]) -> None:
             )
 
 
+def _with_baseline(record: Record) -> Record:
+    """Return a record as it was recorded, before its baseline was removed."""
+    if record.recorded is None:
+        return record
+    return replace(record, value=record.recorded)
+
+
 def _check_length(records: Sequence[Record], sample_count: int) -> None:
     """Check that records have enough samples in common."""
     if sample_count >= 2 * LEAD:
@@ -198,7 +206,8 @@ def _check_length(records: Sequence[Record], sample_count: int) -> None:
         have = f"the record {quoted(records[0].name)} has {sample_count} samples"
         remedy = "give a longer one"
     else:
-        have = f"the records have {sample_count} sample{'' if sample_count == 1 else 's'} in common"
+        ending = "" if sample_count == 1 else "s"
+        have = f"the records have {sample_count} sample{ending} in common"
         remedy = "give longer records that overlap in time"
     raise InputError(f"{have}, and {2 * LEAD} are needed; {remedy}")
 

@@ -85,9 +85,11 @@ def delay_of(
         return common, np.zeros(len(times))
     candidates = np.flatnonzero(sure)
     if acquired.force is not None:
+        # sampled with the force, a record is as late as its simulation under that force
         reference = candidates[np.argmin(np.abs(times[candidates]))]
     else:
         reference = candidates[np.argmax(correlation[candidates])]
+    # a record unlike its simulation has no delay to go by, and one of less than half a sample none
     skew = np.where(sure, times - times[reference], 0.0)
     skew = np.where(np.abs(skew) * rate > _TOGETHER, skew, 0.0)
     polarity = np.array([delay.polarity[0] for delay in own_delays])
@@ -117,11 +119,13 @@ def _own_delay(
     """
     reach = len(fade) // 2
     expected_start = simulated[window]
+    # the fade acts on both signals, and so as its square on their products
     weight = fade[: len(expected_start)] ** 2
     ahead = min(window.start, reach)
     measured = band_limited(value[window.start - ahead : window.stop + reach], rate, band)
     expected = weight * band_limited(expected_start, rate, band)
-    # correlation with the simulation over the norm of the record, at each lag
+    # Correlation with the simulation over the norm of the record, at each lag. The norm of the
+    # simulation is the same at all of them.
     products = fftconvolve(measured, expected[::-1], "valid")
     power = fftconvolve(measured**2, weight[::-1], "valid")
     least_power = 1e-12 * power.max() + 1e-300

@@ -54,7 +54,9 @@ def correlation_charts(correlation: Correlation) -> list[Chart]:
 
 def those_drawn(number: int) -> str:
     """Return, as the end of a caption, which of so many records are drawn; empty if all are."""
-    return f" The first {MOST} of {number} are drawn." if number > MOST else ""
+    if number <= MOST:
+        return ""
+    return f" The first {MOST} of {number} are drawn."
 
 
 def _name(criteria: Criteria, number: int) -> str:
@@ -104,15 +106,22 @@ def _responses(correlation: Correlation) -> Chart:
     axis = Axis("Frequency", "Hz", range=correlation.band)
     rows: list[tuple[Panel, ...]] = []
     computed = np.array([pair.frequency for pair in correlation.modes if pair.number is not None])
-    quantity = "Magnitude" if correlation.hits else "Amplitude"
+    if correlation.hits:
+        title = "Frequency responses"
+        what = "Frequency responses to the force (estimator H1)"
+        quantity = "Magnitude"
+        per_force = "/N"
+    else:
+        title = "Spectra"
+        what = "Spectra of record and simulation"
+        quantity = "Amplitude"
+        per_force = ""
     for number, sensor in enumerate(correlation.sensors[:MOST]):
         lines, shown = magnitude_lines(
             correlation.frequency,
             (correlation.measured_response[number], correlation.simulated_response[number]),
         )
-        scale = Axis(
-            quantity, f"{sensor.unit}/N" if correlation.hits else sensor.unit, log=True, range=shown
-        )
+        scale = Axis(quantity, f"{sensor.unit}{per_force}", log=True, range=shown)
         marks: tuple[Mark, ...] = (*lines, Rug(computed, "modes of the case", "fit"))
         panels = [
             Panel(
@@ -133,21 +142,11 @@ def _responses(correlation: Correlation) -> Chart:
                 )
             )
         rows += [(panel,) for panel in panels]
-    if correlation.hits:
-        what = "Frequency responses to the force (estimator H1)"
-    else:
-        what = "Spectra of record and simulation"
     caption = (
         f"{what}, with the same window and spectral leakage. Ticks mark the modes of the "
         f"case.{those_drawn(len(correlation.sensors))}"
     )
-    return Chart(
-        "responses",
-        "Frequency responses" if correlation.hits else "Spectra",
-        tuple(rows),
-        caption,
-        _HEIGHT,
-    )
+    return Chart("responses", title, tuple(rows), caption, _HEIGHT)
 
 
 def magnitude_lines(
@@ -165,7 +164,8 @@ def magnitude_lines(
         Line(frequency, np.maximum(size, 1e-3 * floor), name, role)
         for size, (name, role) in zip(sizes, looks, strict=True)
     ]
-    return lines, (floor, 2.0 * most) if most > 0.0 else None
+    shown = (floor, 2.0 * most) if most > 0.0 else None
+    return lines, shown
 
 
 def frac_chart(criteria: Criteria, of: str) -> Chart:
@@ -228,7 +228,5 @@ def what_frac_is_of(correlation: Correlation) -> str:
     """Return of what the frequency response assurance criterion is."""
     if not correlation.hits:
         return "the spectra of the signals, since no force was measured"
-    return (
-        f"the frequency responses to the force, by H1 from {correlation.hits} "
-        f"hit{'s' if correlation.hits > 1 else ''}"
-    )
+    ending = "s" if correlation.hits > 1 else ""
+    return f"the frequency responses to the force, by H1 from {correlation.hits} hit{ending}"

@@ -65,10 +65,15 @@ def compared_kind(
             "time; compare them one after the other"
         )
     kind = asked or _default_kind(list(contents.values()), hammer, windowed=windowed)
-    lacking = only_responses if kind == "records" else only_records
+    if kind == "records":
+        lacking = only_responses
+        what = "record over time"
+    else:
+        lacking = only_records
+        what = "frequency response"
     if lacking:
-        has = "no record over time" if kind == "records" else "no frequency response"
-        raise InputError(f"{lacking[0]} has {has}; leave it out", "--compare" if asked else "")
+        key = "--compare" if asked else ""
+        raise InputError(f"{lacking[0]} has no {what}; leave it out", key)
     remarks = [
         _remark(path, contents[path], kind)
         for path in paths
@@ -84,8 +89,10 @@ def _default_kind(contents: Sequence[Contents], hammer: str | None, *, windowed:
     if not any(file.records for file in contents):
         return "responses"
     a_file_has_records_alone = any(not file.responses for file in contents)
-    hammer_names = () if hammer is None else (hammer, name_and_unit(hammer)[0])
-    hammer_is_recorded = any(name in file.records for file in contents for name in hammer_names)
+    hammer_is_recorded = False
+    if hammer is not None:
+        hammer_names = (hammer, name_and_unit(hammer)[0])
+        hammer_is_recorded = any(name in file.records for file in contents for name in hammer_names)
     if a_file_has_records_alone or windowed or hammer_is_recorded:
         return "records"
     return "responses"
@@ -101,4 +108,5 @@ def _remark(path: str | Path, contents: Contents, kind: str) -> str:
 
 
 def _counted(count: int, singular: str, plural: str) -> str:
-    return f"{count} {singular if count == 1 else plural}"
+    noun = singular if count == 1 else plural
+    return f"{count} {noun}"

@@ -42,6 +42,9 @@ from vibroimpact.test_analysis.simulated import (
     plate_problem,
 )
 
+_LEAST_POWER = 1e-300
+"""Power that keeps quotients of spectral densities finite where a force has none."""
+
 
 @dataclass(frozen=True, eq=False)
 class Correlation(Reported, reported_in="vibroimpact.test_analysis.report"):
@@ -230,10 +233,13 @@ def correlate(
     onsets = acquired.onsets
     if acquired.force is None:
         first_touch = acting.start + delay.time
+        delay_time = acquired.start + first_touch
         onsets = (max(0, round(first_touch * rate)),)
     else:
         first_touch = onsets[0] / rate
+        delay_time = delay.time
     pieces = _pieces(onsets, int(acting.length * rate), sample_count)
+    hits = 0 if acquired.force is None else len(pieces)
     decays = _decays(acquired, measured, pieces, acting.end, sought)
     pairs = pairs_of(problem, acquired.sensors, decays, sought)
     differences = shared_differences(pairs)
@@ -243,6 +249,8 @@ def correlate(
     inside = (frequency >= compared[0]) & (frequency <= compared[1])
     frequency = frequency[inside]
     measured_response = measured_response[:, inside]
+    if coherence is not None:
+        coherence = coherence[:, inside]
 
     def response_of(simulation: _Simulation) -> Complex:
         return _responses(simulation.signals, acquired.force, pieces)[0][:, inside]
@@ -253,7 +261,10 @@ def correlate(
     damped_frac = frac(measured_response, response_of(damped))
     octaves = octaves_of(compared)
     aligned = aligned_time(rate, acting.length)
-    all_records = records if force is None else [*records, force]
+    # records of one file share its doubts, each of which is said once
+    all_records = list(records)
+    if force is not None:
+        all_records.append(force)
     doubts = (
         *dict.fromkeys(doubt for record in all_records for doubt in record.named_doubts),
         *doubts_of_differences(differences, plain_frac, scaled_frac, damped_frac),
@@ -272,7 +283,7 @@ def correlate(
         sensors=acquired.sensors,
         band=compared,
         first_touch=acquired.start + first_touch,
-        delay=delay.time if acquired.force is not None else acquired.start + first_touch,
+        delay=delay_time,
         polarity=delay.polarity,
         coefficient=delay.correlation,
         time=np.arange(pieces[0].start, pieces[0].stop) / rate - first_touch,
@@ -281,8 +292,8 @@ def correlate(
         frequency=frequency,
         measured_response=measured_response,
         simulated_response=simulated_response,
-        coherence=None if coherence is None else coherence[:, inside],
-        hits=len(pieces) if acquired.force is not None else 0,
+        coherence=coherence,
+        hits=hits,
         octaves=octaves,
         frac=plain_frac,
         octave_frac=frac_of_octaves(octaves, frequency, measured_response, simulated_response),
@@ -341,8 +352,12 @@ def _corrected(
 
     scaled_problem = differences.scaled(problem)
     damped_problem = differences.damped(scaled_problem)
-    scaled = plain if scaled_problem is problem else simulation_of(scaled_problem)
-    damped = scaled if damped_problem is scaled_problem else simulation_of(damped_problem)
+    scaled = plain
+    if scaled_problem is not problem:
+        scaled = simulation_of(scaled_problem)
+    damped = scaled
+    if damped_problem is not scaled_problem:
+        damped = simulation_of(damped_problem)
     return scaled, damped
 
 
@@ -395,7 +410,9 @@ def _simulated_force(
     """Return the contact force of the case's impact, and without a window up to the next one."""
     rate = acquired.rate
     length = _compared_length(acquired, window)
-    force = impact_force(problem, rate, length, impacts=2 if window is None else None)
+    # a second impact is computed only to end the comparison before it
+    impacts = 2 if window is None else None
+    force = impact_force(problem, rate, length, impacts=impacts)
     if window is None and len(force.contacts) > 1:
         second_touch = float(force.contacts[1, 0])
         length = min(length, second_touch - HALF_LENGTH / rate)
@@ -428,7 +445,10 @@ def _measured_force(acquired: Acquired, samples: Floats, window: float | None) -
 
 def _compared_length(acquired: Acquired, window: float | None) -> float:
     """Return the time from the first touch on that is compared [s], as far as the records go."""
-    return min(np.inf if window is None else window, _longest(acquired))
+    longest = _longest(acquired)
+    if window is None:
+        return longest
+    return min(window, longest)
 
 
 def _too_short(acquired: Acquired, window: float | None, length: float) -> str:
@@ -491,11 +511,12 @@ def _band(
     lowest = float(modes.frequencies[0])
     highest = float(modes.frequencies[-1])
     if lowest >= acquired.passed:
-        by_filter = any(sensor.corner == acquired.passed for sensor in acquired.sensors)
-        faster = "raise the corner of the anti-alias filter" if by_filter else "sample faster"
+        remedy = "sample faster"
+        if any(sensor.corner == acquired.passed for sensor in acquired.sensors):
+            remedy = "raise the corner of the anti-alias filter"
         raise InputError(
             f"the lowest mode of the plate has {lowest:.5g} Hz, and the sensors pass "
-            f"{acquired.passed:g} Hz; {faster}"
+            f"{acquired.passed:g} Hz; {remedy}"
         )
     return 0.5 * lowest, min(max(highest, 1.5 * lowest), acquired.passed)
 
@@ -507,9 +528,10 @@ def _longest(acquired: Acquired) -> float:
     """
     gaps = [next_onset - onset - LEAD for onset, next_onset in itertools.pairwise(acquired.onsets)]
     last = acquired.value.shape[1] - acquired.onsets[-1]
-    shortest = min(gaps, default=last)
-    last_is_shorter = 0.5 * shortest <= last < shortest
-    return (last if last_is_shorter else shortest) / acquired.rate
+    length = min(gaps, default=last)
+    if 0.5 * length <= last < length:
+        length = last
+    return length / acquired.rate
 
 
 def _responses(
@@ -522,18 +544,26 @@ def _responses(
     samples = pieces[0].stop - pieces[0].start
     # keeps the onset, and fades the end
     window = 0.5 + 0.5 * np.cos(np.pi * np.arange(samples) / samples)
-    spectra = np.stack([fft.rfft(window * value[:, piece]) for piece in pieces])
+    spectra = _spectra(value, pieces, window)
     if force is None:
+        # a tone of amplitude 1 has the line 1, whatever the window
         return spectra[0] * 2.0 / window.sum(), None
-    force_spectra = np.stack([fft.rfft(window * force[piece]) for piece in pieces])[:, None]
+    force_spectra = _spectra(force[None], pieces, window)
     # the sums over the hits estimate the spectral densities S_aF, S_FF and S_aa
-    cross = (spectra * force_spectra.conj()).sum(axis=0)
+    cross_power = (spectra * force_spectra.conj()).sum(axis=0)
     force_power = (np.abs(force_spectra) ** 2).sum(axis=0)
-    response = cross / np.maximum(force_power, 1e-300)  # H_1
+    response = cross_power / np.maximum(force_power, _LEAST_POWER)  # H_1
     if len(pieces) == 1:
+        # of one hit, force and response are coherent whatever the noise
         return response, None
-    powers = force_power * (np.abs(spectra) ** 2).sum(axis=0)
-    return response, np.abs(cross) ** 2 / np.maximum(powers, 1e-300)
+    record_power = (np.abs(spectra) ** 2).sum(axis=0)
+    both_powers = np.maximum(force_power * record_power, _LEAST_POWER)
+    return response, np.abs(cross_power) ** 2 / both_powers
+
+
+def _spectra(value: Floats, pieces: Sequence[slice], window: Floats) -> Complex:
+    """Return the spectra of the windowed pieces of records, (hits, S, frequencies)."""
+    return np.stack([fft.rfft(window * value[:, piece]) for piece in pieces])
 
 
 def _decays(

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.charts.chart import Chart
 from vibroimpact.files.plain_names import plain_names
@@ -117,8 +118,7 @@ def octave_blocks(criteria: Criteria, compared: str) -> tuple[Table, Note]:
     low, high = criteria.band
     rows = [[f"{low:.5g} to {high:.5g} Hz, whole", *(f"{frac:.3f}" for frac in criteria.frac)]]
     for (low, high), fracs in zip(criteria.octaves, criteria.octave_frac.T, strict=True):
-        cells = [MISSING if np.isnan(frac) else f"{frac:.3f}" for frac in fracs]
-        rows.append([f"{low:.5g} to {high:.5g} Hz", *cells])
+        rows.append([f"{low:.5g} to {high:.5g} Hz", *map(_frac_cell, fracs)])
     note = Note(
         f"FRAC of {compared}: the frequency response assurance criterion, 1 where they are equal "
         "except for a factor."
@@ -136,6 +136,20 @@ def modes_section(modes: Sequence[ModePair], explanation: str) -> Section:
     return Section("modes", "Modes", blocks)
 
 
+def _frac_cell(frac: float) -> str:
+    return MISSING if np.isnan(frac) else f"{frac:.3f}"
+
+
+def polarity_cell(polarity: float) -> str:
+    """Return how a record is positive beside its simulation; `polarity` is 1 or -1."""
+    return "inverted" if polarity < 0.0 else "as simulated"
+
+
+def known_or_none(values: Floats) -> list[float | None]:
+    """Return numbers as JSON can hold them: None for NaN, of what is not known."""
+    return [None if np.isnan(value) else float(value) for value in values]
+
+
 def mode_cells(modes: Sequence[ModePair]) -> tuple[list[str], list[list[str]]]:
     """Return headers and rows of the table of modes."""
     return without_blank_remarks(MODE_HEADERS, [mode_row(pair) for pair in modes])
@@ -147,17 +161,22 @@ def without_blank_remarks(
     """Return headers and rows of a table whose last column has remarks, without that if
     there is none.
     """
-    kept = len(headers) if any(row[-1] for row in rows) else len(headers) - 1
+    kept = len(headers)
+    if not any(row[-1] for row in rows):
+        kept -= 1
     return list(headers[:kept]), [list(row[:kept]) for row in rows]
 
 
 def mode_row(pair: ModePair) -> list[str]:
     """Return the cells of a mode in its table."""
-    number = MISSING if pair.number is None else str(pair.number)
-    computed, ratio = (
-        MISSING if pair.number is None else digits(value, 5)
-        for value in (pair.frequency, pair.damping_ratio)
-    )
+    number = MISSING
+    computed = MISSING
+    ratio = MISSING
+    difference = MISSING
+    if pair.number is not None:
+        number = str(pair.number)
+        computed = digits(pair.frequency, 5)
+        ratio = digits(pair.damping_ratio, 5)
     if pair.measured is None:
         return [
             number,
@@ -173,9 +192,13 @@ def mode_row(pair: ModePair) -> list[str]:
         ]
     mode = pair.measured
     half = mode.frequency.interval[1] - mode.frequency.value
-    ratio_and_ends = (mode.damping_ratio.value, *mode.damping_ratio.interval)
-    damping = [MISSING if mode.doubt else digits(value, 4) for value in ratio_and_ends]
-    difference = MISSING if pair.number is None else signed(100.0 * pair.frequency_difference)
+    if mode.doubt:
+        damping = [MISSING] * 3
+    else:
+        ratio_and_ends = (mode.damping_ratio.value, *mode.damping_ratio.interval)
+        damping = [digits(value, 4) for value in ratio_and_ends]
+    if pair.number is not None:
+        difference = signed(100.0 * pair.frequency_difference)
     return [
         number,
         computed,

@@ -171,7 +171,9 @@ def _of_force(acquired: Acquired, delay: Delay) -> Iterator[str]:
         "frequency responses and simulation suffer",
     )
     if (delay.polarity < 0.0).all():
-        subject = "all records have" if len(delay.polarity) > 1 else "the only record has"
+        subject = "the only record has"
+        if len(delay.polarity) > 1:
+            subject = "all records have"
         yield f"{subject} inverted polarity: the sign of the force may be wrong"
     samples = delay.time * acquired.rate
     if abs(samples) > _TOGETHER:
@@ -194,12 +196,13 @@ def _of_excitation(acquired: Acquired, excited: Excited) -> Iterator[str]:
     ends = excited.ends
     if ends is None:
         return
-    measured = acquired.force is not None
-    fallen = (
-        f"the spectrum of {'the force' if measured else 'the contact force of the case'} has "
-        f"fallen by 20 dB at {ends:.4g} Hz"
-    )
-    harder = "a harder tip" if measured else "a smaller or harder sphere"
+    if acquired.force is None:
+        force = "the contact force of the case"
+        harder = "a smaller or harder sphere"
+    else:
+        force = "the force"
+        harder = "a harder tip"
+    fallen = f"the spectrum of {force} has fallen by 20 dB at {ends:.4g} Hz"
     if not is_excited(band, ends):
         yield (
             f"{fallen}, and the band begins at {band[0]:.4g} Hz: hardly anything is excited in "
@@ -210,5 +213,5 @@ def _of_excitation(acquired: Acquired, excited: Excited) -> Iterator[str]:
             f"{fallen}, where the band ends: only decays are evaluated above; use {harder} to "
             "compare more, or state a band"
         )
-    elif measured:  # what is divided by it is noise
+    elif acquired.force is not None:  # what is divided by it is noise
         yield f"{fallen}; use {harder}, or a band that ends there"

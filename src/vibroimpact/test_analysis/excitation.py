@@ -33,6 +33,7 @@ def force_ends(force: ForceImpulses, highest: float) -> float | None:
     for begin, end in force.contacts:
         inside = (force.time >= begin) & (force.time <= end)
         power += _power(force.time[inside] - begin, force.impulse[inside], frequency)
+    # at 0 Hz the spectrum of a pulse of one sign is largest: its impulse
     weak = frequency[power < _FALLEN**2 * power[0]]
     return float(weak[0]) if len(weak) else None
 

@@ -54,7 +54,9 @@ def clipped_count(value: Floats, recorded: Floats, rest: Floats) -> int:
     # runs of equal samples, as the feature `clipped_part` counts them
     clipped_part = float(FAMILY.of(Block(value[None], 1.0, recorded=recorded[None]))[0, 0])
     count = round(clipped_part * len(value))
-    noise = float(np.std(rest)) if len(rest) >= _LEAST_AT_REST else 0.0
+    noise = 0.0
+    if len(rest) >= _LEAST_AT_REST:
+        noise = float(np.std(rest))
     span = float(np.ptp(recorded))
     widths = [*(width * span for width in _WIDTHS), _NOISE_WIDTH * noise]
     peak = float(np.abs(value).max())

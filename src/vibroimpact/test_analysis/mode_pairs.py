@@ -165,6 +165,7 @@ def _responses(problem: Problem, sensors: Sequence[Sensor]) -> Floats:
         [np.abs(modes.points[sensor.name] @ np.asarray(sensor.components)) for sensor in sensors]
     )
     # an impulse gives each mode a velocity; a sensor of order k sees omega^(k - 1) times it
+    # in the vibration that follows
     orders = np.array([[sensor.order - 1] for sensor in sensors])
     amplitudes = np.abs(modes.contact) * shapes * modes.angular_frequencies**orders
     return np.asarray(amplitudes.max(axis=0))
@@ -186,6 +187,7 @@ def _partners(frequencies: Floats, response: Floats, measured: Sequence[float]) 
             least_sum = shifted_sum
     fewer = min(differences.shape)
     if fewer >= FEWEST:
+        # a shift that pairs dense modes at random must not count as something in common
         shifted_pairs, shifted_sum = _best_shifted(differences, pairs, least_sum)
         lowest = frequencies[detectable[0]]
         highest = frequencies[detectable[-1]]

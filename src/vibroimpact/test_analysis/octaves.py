@@ -43,6 +43,8 @@ def frac_of_octaves(
     criteria = []
     for low, high in octaves:
         inside = (frequency >= low) & (frequency <= high)
-        enough = inside.sum() >= FEW
-        criteria.append(frac(measured[:, inside], simulated[:, inside]) if enough else unknown)
+        if inside.sum() < FEW:
+            criteria.append(unknown)
+        else:
+            criteria.append(frac(measured[:, inside], simulated[:, inside]))
     return np.stack(criteria, axis=1)

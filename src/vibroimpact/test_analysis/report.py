@@ -6,8 +6,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from vibroimpact._version import __version__
 from vibroimpact.files.plain_names import plain_names
 from vibroimpact.quoting import visible
@@ -17,9 +15,11 @@ from vibroimpact.test_analysis.charts import correlation_charts, what_frac_is_of
 from vibroimpact.test_analysis.correlate import Correlation
 from vibroimpact.test_analysis.criteria_tables import (
     comparison_report,
+    known_or_none,
     mode_table,
     modes_section,
     octave_blocks,
+    polarity_cell,
 )
 from vibroimpact.test_analysis.mode_pairs import damping_field
 from vibroimpact.units.display import digits
@@ -69,7 +69,7 @@ def record_table(correlation: Correlation) -> Table:
         rows.append(
             [
                 visible(sensor.name),
-                "inverted" if correlation.polarity[number] < 0.0 else "as simulated",
+                polarity_cell(correlation.polarity[number]),
                 f"{correlation.coefficient[number]:.3f}",
                 digits(correlation.scale[number], 4),
                 f"{100.0 * correlation.relative_residual[number]:.1f}",
@@ -123,9 +123,7 @@ def _records(correlation: Correlation) -> dict[str, Any]:
             "scale": float(correlation.scale[number]),
             "residual_rms_relative": float(correlation.relative_residual[number]),
             "frac": float(correlation.frac[number]),
-            "octave_frac": [
-                None if np.isnan(frac) else float(frac) for frac in correlation.octave_frac[number]
-            ],
+            "octave_frac": known_or_none(correlation.octave_frac[number]),
             "scaled_frac": float(correlation.scaled_frac[number]),
             "damped_frac": float(correlation.damped_frac[number]),
         }

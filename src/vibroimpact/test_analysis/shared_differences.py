@@ -57,6 +57,7 @@ class CommonDifference:
         low, high = sorted((100.0 * (sign * self.least), 100.0 * (sign * self.largest)))
         # frequencies are proportional to the root of the modulus over the density, and of a plate
         # in bending to its thickness
+        # frequencies of bending go with the root of modulus over density, and with the thickness
         modulus_percent = 100.0 * ((1.0 + self.value) ** 2 - 1.0)
         return (
             f"the frequencies of {self.modes} modes are {100.0 * abs(self.value):.2g} % "
@@ -219,6 +220,8 @@ def common_difference(pairs: Sequence[ModePair]) -> CommonDifference | None:
     differences = np.array(relative_differences)
     deviations = np.array(relative_deviations)
     median = float(np.median(differences))
+    # they are one difference if none strays from the median by more than its own uncertainty, or by
+    # more than a part of the median
     tolerance = np.maximum(_ALIKE * abs(median), _SURE * deviations)
     alike = np.abs(differences - median) <= tolerance
     if abs(median) < max(_LEAST, _SURE * float(np.median(deviations))) or not alike.all():
@@ -244,7 +247,7 @@ def damping_difference(pairs: Sequence[ModePair]) -> DampingDifference | None:
     of_case = np.array([pair.damping_ratio for pair, _ in compared])
     measured = np.array([mode.damping_ratio.value for _, mode in compared])
     deviation = float(np.median([mode.damping_ratio.deviation for _, mode in compared]))
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore"):  # infinite for a case without damping
         multiples = measured / of_case
     median = float(np.median(multiples))
     if abs(np.log(median)) < max(_DAMPED, _SURE * deviation):
@@ -270,4 +273,6 @@ def range_of(values: Floats | Sequence[float], digits: int = 0) -> str:
     number_format = f".{digits}g" if digits else ".3f"
     least = f"{min(values):{number_format}}"
     largest = f"{max(values):{number_format}}"
-    return least if least == largest else f"{least} to {largest}"
+    if least == largest:
+        return least
+    return f"{least} to {largest}"

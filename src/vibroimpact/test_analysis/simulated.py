@@ -89,6 +89,7 @@ def impact_force(
     impacts : int, optional
         Impacts after which no more are sought; None for all.
     """
+    # it begins at the plate, so that its time is that since the first touch
     from_first_touch = replace(
         problem,
         height=None,
@@ -105,6 +106,7 @@ def impact_force(
     times = []
     impulses = []
     for begin, contact_duration in zip(begins.tolist(), durations.tolist(), strict=True):
+        # a long contact is split, so that the nodes stay dense beside the samples
         interval_count = int(np.ceil(contact_duration * rate / _SPAN))
         edges = begin + np.linspace(0.0, contact_duration, interval_count + 1)
         half = 0.5 * np.diff(edges)[:, None]

@@ -121,7 +121,8 @@ def _of_records(responses: Sequence[FrequencyResponse]) -> Iterator[str]:
     for source in dict.fromkeys(response.source for response in responses):
         count = len(contents_of(source).records)
         if count:
-            records = f"{count} record{'s' if count > 1 else ''} over time"
+            ending = "s" if count > 1 else ""
+            records = f"{count} record{ending} over time"
             yield (
                 f"{source} also has {records}, which these modes are not from; correlate "
                 "--compare records compares them with a case"

@@ -101,6 +101,10 @@ def correlate_responses(
     # of the simulation that is most like the measurement
     polarity = _polarity(all_values[:, inside], damped, match)
     measured = polarity[:, None] * all_values[:, inside]
+    # where the sense of the force is not stated, most responses count as upright
+    stated_polarity = polarity
+    if not match.sense_known:
+        stated_polarity = polarity * _majority(polarity)
     octaves = octaves_of(compared)
     correlation = ResponseCorrelation(
         case=case,
@@ -109,7 +113,7 @@ def correlate_responses(
         reference=match.reference,
         reciprocal=match.reciprocal,
         band=compared,
-        polarity=polarity if match.sense_known else polarity * _majority(polarity),
+        polarity=stated_polarity,
         frequency=frequency,
         measured_response=measured,
         simulated_response=simulated,
@@ -254,7 +258,8 @@ def _coherence(match: Matched, inside: Bools) -> Floats | None:
     coherences = [response.coherence for response in match.responses]
     if all(coherence is None for coherence in coherences):
         return None
-    unknown = np.full(int(inside.sum()), np.nan)
-    return np.stack(
-        [unknown if coherence is None else coherence[inside] for coherence in coherences]
-    )
+    in_band = np.full((len(coherences), int(inside.sum())), np.nan)
+    for row, coherence in enumerate(coherences):
+        if coherence is not None:
+            in_band[row] = coherence[inside]
+    return in_band

@@ -44,16 +44,20 @@ def computed_responses(
         Frequencies [Hz], above 0.
     """
     omega = 2.0 * np.pi * np.asarray(frequency)
+    # rigid motions and modes of vibration alike
     bases = bases_of_plate(problem)
     natural = np.concatenate([basis.angular_frequencies for basis in bases])
     ratios = np.concatenate([basis.damping_ratios for basis in bases])
-    resonances = 1.0 / (natural[:, None] ** 2 - omega**2 + 2j * (ratios * natural)[:, None] * omega)
+    stiffness = natural[:, None] ** 2
+    damping = 2j * (ratios * natural)[:, None]
+    resonances = 1.0 / (stiffness - omega**2 + damping * omega)
     contact_shapes = shapes_of(problem)
     compliances = compliances_of(problem, [sensor.name for sensor in sensors])
     responses = []
     for sensor, unit, compliance in zip(sensors, units, compliances, strict=True):
         components = np.concatenate([basis.points[sensor.name] for basis in bases])
         sensor_shapes = components @ np.asarray(sensor.components)
+        # modes that are left out lie above the band, in which they deflect as springs
         receptance = (contact_shapes * sensor_shapes) @ resonances + compliance
         responses.append(_transfer(sensor, unit, omega) * receptance)
     return np.stack(responses)
@@ -63,8 +67,11 @@ def _transfer(sensor: Sensor, unit: str, omega: Floats) -> Complex:
     """Return what a sensor makes of the displacement or the strain that it sees."""
     if sensor.instrument is None:
         return np.asarray((1j * omega) ** _ORDERS.get(unit, sensor.order))
-    amplification = sensor.amplifier.gain if sensor.amplifier else 1.0
-    transfer = np.full(len(omega), sensor.instrument.gain * amplification, dtype=complex)
+    gain = sensor.instrument.gain
+    if sensor.amplifier:
+        gain *= sensor.amplifier.gain
+    transfer = np.full(len(omega), gain, dtype=complex)
+    # resonators of unit gain at 0 Hz, one after the other
     for stiffness, damping in sensor.sections:
         transfer *= stiffness / (stiffness - omega**2 + 1j * damping * omega)
     return np.asarray(transfer * (1j * omega) ** sensor.order)

@@ -65,10 +65,14 @@ def doubts_about(
     """
     yield from doubts_of_files(match.responses)
     if match.left_out:
-        several = match.left_out > 1
+        subject = "response has"
+        verb = "is"
+        if match.left_out > 1:
+            subject = "responses have"
+            verb = "are"
         yield (
-            f"{match.left_out} {'responses have' if several else 'response has'} no sensor of that "
-            f"name and direction in the case, and {'are' if several else 'is'} not compared"
+            f"{match.left_out} {subject} no sensor of that name and direction in the case, and "
+            f"{verb} not compared"
         )
     if match.reciprocal:
         yield (
@@ -82,7 +86,9 @@ def doubts_about(
         differences, correlation.frac, correlation.scaled_frac, correlation.damped_frac
     )
     for row, sensor in enumerate(correlation.sensors):
-        tolerance = _GAIN if correlation.damped_frac[row] > _ALIKE else _LARGE_GAIN
+        tolerance = _LARGE_GAIN
+        if correlation.damped_frac[row] > _ALIKE:
+            tolerance = _GAIN
         if abs(scale[row] - 1.0) > tolerance:
             yield (
                 f"the response {quoted(sensor.name)} has {scale[row]:.3g} times the simulated "
@@ -114,7 +120,10 @@ def doubts_of_files(responses: Sequence[FrequencyResponse]) -> Iterator[str]:
 
 def _few(names: Sequence[str]) -> str:
     """Return the first names, and that there are more."""
-    return f"{', '.join(names[:_NAMED])}{' and more' if len(names) > _NAMED else ''}"
+    listed = ", ".join(names[:_NAMED])
+    if len(names) > _NAMED:
+        return f"{listed} and more"
+    return listed
 
 
 def _of_coherence(correlation: ResponseCorrelation) -> Iterator[str]:
@@ -135,7 +144,8 @@ def _of_coherence(correlation: ResponseCorrelation) -> Iterator[str]:
             if coherence[line] < COHERENT
         ]
         if low:
-            where.append(f"at the mode{'s' if len(low) > 1 else ''} of {_few(low)} Hz")
+            ending = "s" if len(low) > 1 else ""
+            where.append(f"at the mode{ending} of {_few(low)} Hz")
         fraction = float((coherence < COHERENT).mean())
         if fraction > _MANY:
             where.append(f"at {100.0 * fraction:.2g} % of the frequencies")

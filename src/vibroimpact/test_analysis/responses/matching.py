@@ -80,10 +80,10 @@ def matched(
     name, at_impact, reciprocal = _of_impact(responses, reference)
     normal = [response for response in at_impact if abs(response.at_impact.direction) in (0, UP)]
     if not normal:
+        what = "motions" if reciprocal else "forces"
         raise InputError(
-            f"the {'motions' if reciprocal else 'forces'} at {quoted(name)} are along the "
-            "plate, and the case's force is normal to it; "
-            "give responses with those along z"
+            f"the {what} at {quoted(name)} are along the plate, and the case's force is normal "
+            "to it; give responses with those along z"
         )
     response_of: dict[str, _PlacedResponse] = {}
     for sensor in sensors:
@@ -97,7 +97,8 @@ def matched(
     for sensor in used:
         response = response_of[sensor.name]
         _check_unit(sensor, response.response)
-        force_sign = 1.0 if response.at_impact.direction > 0 else -1.0
+        force_direction = response.at_impact.direction
+        force_sign = 1.0 if force_direction > 0 else -1.0
         signs.append(force_sign * _sense(sensor, response.at_sensor))
     chosen = [response_of[sensor.name] for sensor in used]
     return Matched(
@@ -139,7 +140,9 @@ def _response_of(
             "sensors.direction",
         )
     if len(along) > 1:
-        motion, force = (place, sensor.name) if reciprocal else (sensor.name, place)
+        # reciprocal responses have the force at the sensor, and the motion at the impact
+        motion = place if reciprocal else sensor.name
+        force = sensor.name if reciprocal else place
         raise InputError(
             f"there are {len(along)} frequency responses of the motion at {quoted(motion)} "
             f"to a force at {quoted(force)}; leave one of them in the file"
@@ -198,9 +201,10 @@ def _of_impact(
         name = reference
     placed = []
     for response in responses:
-        force = response.reference
-        motion = response.response
-        at_impact, at_sensor = (motion, force) if reciprocal else (force, motion)
+        at_impact = response.reference
+        at_sensor = response.response
+        if reciprocal:
+            at_impact, at_sensor = at_sensor, at_impact
         if name in at_impact.names:
             placed.append(_PlacedResponse(response, at_impact, at_sensor))
     return name, placed, reciprocal
@@ -218,7 +222,8 @@ def _sense(sensor: Sensor, end: DegreeOfFreedom) -> float:
     """Return 1, or -1 where the response is measured against the direction of a sensor."""
     if end.direction == 0 or sensor.subject == "strain":
         return 1.0
-    return 1.0 if end.direction * sensor.direction[abs(end.direction) - 1] > 0.0 else -1.0
+    along = sensor.direction[abs(end.direction) - 1]
+    return 1.0 if end.direction * along > 0.0 else -1.0
 
 
 def unit_of(sensor: Sensor) -> str:

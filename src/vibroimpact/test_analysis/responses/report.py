@@ -11,9 +11,11 @@ from vibroimpact.quoting import visible
 from vibroimpact.report.report import Explanation, Report, Section, Table, table_of
 from vibroimpact.test_analysis.criteria_tables import (
     comparison_report,
+    known_or_none,
     mode_table,
     modes_section,
     octave_blocks,
+    polarity_cell,
 )
 from vibroimpact.test_analysis.mode_pairs import damping_field
 from vibroimpact.test_analysis.responses.charts import WHAT_FRAC_IS_OF, response_charts
@@ -76,7 +78,7 @@ def response_table(correlation: ResponseCorrelation) -> Table:
             [
                 visible(sensor.name),
                 multiple(correlation.units[number], 0.0).unit,
-                "inverted" if correlation.polarity[number] < 0.0 else "as simulated",
+                polarity_cell(correlation.polarity[number]),
                 digits(correlation.scale[number], 4),
                 f"{correlation.level_difference[number]:.2f}",
                 f"{phases[number]:.1f}",
@@ -91,15 +93,23 @@ def _coherences(correlation: ResponseCorrelation) -> list[float | None]:
     """Return the median coherence of each response; None if it is not known."""
     if correlation.coherence is None:
         return [None] * len(correlation.sensors)
-    return [
-        None if np.isnan(coherence).any() else float(np.median(coherence))
-        for coherence in correlation.coherence
-    ]
+    # the median of a response with NaN, whose coherence is not known, is NaN
+    return known_or_none(np.median(correlation.coherence, axis=1))
+
+
+def _low_parts(correlation: ResponseCorrelation) -> list[float | None]:
+    """Return the part of the band where the coherence of each response is low, if it is known."""
+    if correlation.coherence is None:
+        return [None] * len(correlation.sensors)
+    low = (correlation.coherence < COHERENT).mean(axis=1)
+    unknown = np.isnan(correlation.coherence).any(axis=1)
+    return known_or_none(np.where(unknown, np.nan, low))
 
 
 def _summary(correlation: ResponseCorrelation) -> dict[str, Any]:
     """Return the content of `summary.json`."""
     coherences = _coherences(correlation)
+    low_parts = _low_parts(correlation)
     return {
         "name": correlation.case.name,
         "version": __version__,
@@ -115,16 +125,11 @@ def _summary(correlation: ResponseCorrelation) -> dict[str, Any]:
                 "level_difference_dB": float(correlation.level_difference[number]),
                 "phase_difference_rad": float(correlation.phase_difference[number]),
                 "frac": float(correlation.frac[number]),
-                "octave_frac": [
-                    None if np.isnan(value) else float(value)
-                    for value in correlation.octave_frac[number]
-                ],
+                "octave_frac": known_or_none(correlation.octave_frac[number]),
                 "scaled_frac": float(correlation.scaled_frac[number]),
                 "damped_frac": float(correlation.damped_frac[number]),
                 "coherence_median": coherences[number],
-                "coherence_low_part": None
-                if correlation.coherence is None or coherences[number] is None
-                else float((correlation.coherence[number] < COHERENT).mean()),
+                "coherence_low_part": low_parts[number],
             }
             for number, sensor in enumerate(correlation.sensors)
         },
