@@ -78,14 +78,10 @@ def causes(
         return [], share
     names = [sensor.name for sensor in measured.sensors]
     exponent = float(plate.thickness_exponents.mean())
-    differences = [
-        *_stretch(free, exponent),
-        *(
-            cause
-            for number, name in enumerate(names)
-            for cause in _sensor_differences(free, number, name)
-        ),
-    ]
+    differences = list(_stretch(free, exponent))
+    for number, name in enumerate(names):
+        differences += _sensor_differences(free, number, name)
+    # lengths and parts compare by the least of each that counts
     differences.sort(key=lambda cause: cause.size / _LEAST[cause.name], reverse=True)
     return differences, share
 
@@ -100,8 +96,10 @@ def remedy(plate: Plate, causes: list[Cause]) -> str:
 
 def told(causes: list[Cause]) -> str:
     """Return the largest differences in words."""
-    more = f", and {len(causes) - _NAMED} more" if len(causes) > _NAMED else ""
-    return ", ".join(cause.description for cause in causes[:_NAMED]) + more
+    phrases = [cause.description for cause in causes[:_NAMED]]
+    if len(causes) > _NAMED:
+        phrases.append(f"and {len(causes) - _NAMED} more")
+    return ", ".join(phrases)
 
 
 def _stretch(free: SphereFit, exponent: float) -> Iterator[Cause]:
@@ -161,10 +159,12 @@ def _gains(free: SphereFit) -> tuple[Floats, Floats]:
 
 
 def _percent(part: float) -> str:
-    return f"about {digits(100.0 * abs(part), 2)} % {'higher' if part > 0.0 else 'lower'}"
+    direction = "higher" if part > 0.0 else "lower"
+    return f"about {digits(100.0 * abs(part), 2)} % {direction}"
 
 
 def _rounded_up(size: float) -> float:
     """Return a size rounded up to one digit."""
     unit = 10.0 ** math.floor(math.log10(size))
+    # one digit already, a size may be above itself by rounding
     return round(math.ceil(size / unit - 1e-9) * unit, 12)

@@ -119,7 +119,7 @@ def _contact_force(response: Response) -> ContactForce:
         duration, peak = _first_touch(response, duration)
         time, value = _at_nodes(response, duration)
     _, weights = _NODES
-    impulse = 0.5 * duration * weights * value
+    impulse = 0.5 * duration * weights * value  # Gauss's rule from [-1, 1] to the contact
     return ContactForce(time, impulse, value, np.array([peak, impulse.sum(), duration]))
 
 

@@ -93,7 +93,9 @@ def _of_modes(plate: Plate, measured: Measured) -> Iterator[str]:
         return
     # the last mode below a limit lies some mean distances of modes below it
     wanted = passed + _APART * highest / len(frequencies)
-    instead = " in place of plate.modes" if plate.case.plate.modes is not None else ""
+    instead = ""
+    if plate.case.plate.modes is not None:
+        instead = " in place of plate.modes"
     yield (
         f"the modes of the plate end at {highest:,.0f} Hz, and the filters of the sensors pass "
         f"frequencies up to {passed:,.0f} Hz; the intervals do not contain what the modes above "
@@ -144,7 +146,9 @@ def _of_misfit(
         return
     explaining, share = causes(plate, measured, sphere, search.candidates[0], place)
     if explaining:
-        source = "the case" if place is None else "the case or the place that was given"
+        source = "the case"
+        if place is not None:
+            source = "the case or the place that was given"
         yield (
             f"{misfit}: a set-up that differs from the case leaves {digits(100.0 * share, 2)} "
             f"% of that: {told(explaining)}; correct {source}, or state "

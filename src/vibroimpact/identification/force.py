@@ -91,7 +91,9 @@ def force_behind(
     touched = plate.at(place)
     names = [sensor.name for sensor in measured.sensors]
     samples = measured.value.shape[1]
-    gains = np.ones((len(names), 1)) if setting is None else 1.0 + setting.found.gain[:, None]
+    gains = np.ones((len(names), 1))
+    if setting is not None:
+        gains = 1.0 + setting.found.gain[:, None]
     responses = gains * plate.heard(names).at(shapes_of(touched), compliances_of(touched, names))
 
     nodes = _nodes(touch, duration, measured.rate)
@@ -100,6 +102,7 @@ def force_behind(
     for time in nodes.time:
         of_node = sampled_responses(responses, measured.rate, time + offsets, shares, samples)
         columns.append((of_node * measured.weights).ravel())
+    # rows are samples of all records, in standard deviations of their noise
     matrix = np.stack(columns, axis=1)
     record = (measured.value * measured.weights).ravel()
     kinks = _kinks(nodes, touch, duration)
@@ -175,6 +178,7 @@ def whitening(errors: Floats) -> Callable[[Floats], Floats]:
 
     The errors, (samples, n), have unit deviations.
     """
+    # noise and errors together have the variance 1 + d^2 along each principal direction
     vectors, deviations, _ = np.linalg.svd(errors, full_matrices=False)
     reduction = 1.0 - 1.0 / np.sqrt(1.0 + deviations**2)
 

@@ -254,13 +254,14 @@ def identify_on(
     _, _, duration = sphere.force.facts.tolist()
     # with the noise about the fit, where that is larger
     noise = np.maximum(measured.noise, sphere.noise)
+    setting = None if plate.errors.is_none else sphere.setting
     force = force_behind(
         sphere.plate,
         replace(measured, noise=noise),
         (x, y),
         touch,
         duration,
-        None if plate.errors.is_none else sphere.setting,
+        setting,
     )
     doubts = [doubt for record in records for doubt in record.named_doubts]
     doubts = list(dict.fromkeys(doubts))  # of a file with several records, once

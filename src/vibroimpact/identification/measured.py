@@ -138,9 +138,15 @@ def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: fl
     heard = ~clipped[:, first:last]
     rms = rms_of(value, heard)
     before = whole[:, :first]
-    quiet_noise = np.std(before, axis=1) if first >= _QUIET else np.zeros(len(whole))
-    # zeros before first touch tell no noise
-    quiet = bool(first >= _QUIET and np.all(quiet_noise > 1e-9 * rms))
+    # without a rest of its own, a record has noise in proportion to itself
+    noise = _UNKNOWN * rms
+    quiet = False
+    if first >= _QUIET:
+        quiet_noise = np.std(before, axis=1)
+        # zeros before first touch tell no noise
+        quiet = bool(np.all(quiet_noise > 1e-9 * rms))
+        if quiet:
+            noise = quiet_noise
     return Measured(
         sensors=used,
         value=value,
@@ -148,7 +154,7 @@ def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: fl
         rate=rate,
         start=start + first / rate,
         onset=onset - start - first / rate,
-        noise=quiet_noise if quiet else _UNKNOWN * rms,
+        noise=noise,
         quiet=quiet,
         removed=tuple(record.removed or Removed(0.0, 0.0) for record in records),
         polarity=np.ones(len(used)),
@@ -164,7 +170,9 @@ def _clipped_on_common_time(records: Sequence[Record]) -> Bools:
 
 def rms_of(value: Floats, heard: Bools) -> Floats:
     """Return the root mean square of each row (S, samples) over the samples that are used."""
-    return np.asarray(np.sqrt((value**2 * heard).sum(axis=1) / np.maximum(heard.sum(axis=1), 1)))
+    energy = (value**2 * heard).sum(axis=1)
+    samples = np.maximum(heard.sum(axis=1), 1)
+    return np.asarray(np.sqrt(energy / samples))
 
 
 def sensors_of(sensors: Sequence[Sensor], records: Sequence[Record]) -> tuple[Sensor, ...]:
@@ -234,7 +242,9 @@ def on_common_time(records: Sequence[Record]) -> tuple[Floats, float]:
     from_start = [
         record.value[round(offset) :] for record, offset in zip(records, offsets, strict=True)
     ]
-    samples = min(max(0, round((end - start) * rate)), *(len(value) for value in from_start))
+    lengths = [len(value) for value in from_start]
+    # rounded, the common time may be a sample longer than one of them
+    samples = min(max(0, round((end - start) * rate)), *lengths)
     return np.stack([value[:samples] for value in from_start]), start
 
 
@@ -242,7 +252,9 @@ def _check(record: Record, sensor: Sensor) -> None:
     """Raise InputError unless a record can be that of a sensor."""
     name = quoted(record.name)
     if record.unit.replace("^", "") != sensor.unit and (record.unit, sensor.unit) != _STRAIN:
-        unit = f"in {record.unit}" if record.unit else "without a unit"
+        unit = "without a unit"
+        if record.unit:
+            unit = f"in {record.unit}"
         raise InputError(
             f"the record {name} is {unit}, and the sensor of that name reads {sensor.unit}"
         )

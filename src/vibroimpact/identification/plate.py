@@ -133,12 +133,17 @@ class Plate:
         modes = len(self._model.angular_frequencies)
         # a mode has the area of its wavelength squared over pi (Weyl)
         step = np.sqrt(np.pi * length * width / modes) / _PER_WAVELENGTH
-        x, y = (
-            np.linspace(start, end, max(5, round((end - start) / step) + 1))
-            for start, end in zip(low.tolist(), high.tolist(), strict=True)
-        )
-        places = np.stack(np.meshgrid(x, y), axis=-1)
-        return x, y, self.deflections(places.reshape(-1, 2)).reshape(len(y), len(x), -1)
+
+        def coordinates(axis: int) -> Floats:
+            start = float(low[axis])
+            end = float(high[axis])
+            count = round((end - start) / step) + 1
+            return np.linspace(start, end, max(5, count))
+
+        x = coordinates(0)
+        y = coordinates(1)
+        places = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+        return x, y, self.deflections(places).reshape(len(y), len(x), -1)
 
     @cached_property
     def lacking(self) -> tuple[float, float]:
@@ -155,10 +160,11 @@ class Plate:
         element_size = recipe.shape.element_size / _FINER
         finer = replace(recipe, shape=replace(recipe.shape, element_size=element_size))
         size = np.asarray(recipe.shape.size[:2])
-        # the first point of the sequence is the origin
+        # evenly spread and without a draw; the first point of the sequence is the origin
         in_square = Halton(2, scramble=False).random(_PLACES + 1)[1:] - 0.5
         places = [(x, y) for x, y in (_MIDDLE * size * in_square).tolist()]
-        added = computed_compliances(finer, places) / computed_compliances(recipe, places) - 1.0
+        stated = computed_compliances(recipe, places)
+        added = computed_compliances(finer, places) / stated - 1.0
         return float(added.mean()), float(added.std())
 
     @cached_property
@@ -228,7 +234,8 @@ class Plate:
         x, y = place_of(model.mesh, spot, side)
         nodes = model.mesh.nodes[:, :2]
         stated = np.array([x, y])
-        moved = np.clip([x + by[0], y + by[1]], nodes.min(axis=0), nodes.max(axis=0))
+        # a sensor does not leave the plate
+        moved = np.clip(stated + by, nodes.min(axis=0), nodes.max(axis=0))
 
         def seen(place: Floats, side: Side) -> Floats:
             if name in body.strained:
@@ -244,8 +251,10 @@ class Plate:
 
         The modes are rigid motions, if the plate has some, and those of vibration.
         """
-        # of unit modal mass, of a plate that is thicker by a part
-        lighter = 1.0 if self.setup is None else (1.0 + self.setup.thickness) ** -0.5
+        lighter = 1.0
+        if self.setup is not None:
+            # of unit modal mass, of a plate that is thicker by a part
+            lighter = (1.0 + self.setup.thickness) ** -0.5
         of_modes = lighter * self._model.at(places, "upper")[0][:, :, 2].T
         if self.problem.plate.rigid is None:
             return np.asarray(of_modes)
@@ -332,9 +341,11 @@ def compliances_of(problem: Problem, names: Sequence[str]) -> Floats:
     assert problem.plate.modes is not None  # `plate_of` has seen to it
     directions = {sensor.name: np.asarray(sensor.components) for sensor in problem.sensors}
     residuals = problem.plate.modes.residuals
-    return np.array(
-        [residuals[name] @ directions[name] if name in residuals else 0.0 for name in names]
-    )
+    compliances = np.zeros(len(names))
+    for number, name in enumerate(names):
+        if name in residuals:
+            compliances[number] = residuals[name] @ directions[name]
+    return compliances
 
 
 def with_modes_left_out(problem: Problem) -> list[Problem]:
@@ -489,8 +500,9 @@ def _check_identifiable(case: CaseTable) -> None:
             'the modes of a sphere change with its size, which is sought; leave it "rigid"',
             "sphere.model",
         )
-    if case.contact.local.finite_sphere or treatment_of(case) == "identified":
-        key = "finite_sphere" if case.contact.local.finite_sphere else "local_compliance"
+    finite_sphere = case.contact.local.finite_sphere
+    if finite_sphere or treatment_of(case) == "identified":
+        key = "finite_sphere" if finite_sphere else "local_compliance"
         raise InputError(
             "it changes with the size of the sphere, which is sought; leave it out",
             f"contact.{key}",
@@ -504,7 +516,8 @@ def _frequency_errors(problem: Problem, model_error: float, frequency_error: flo
     rigid = problem.plate.rigid
     modes = problem.plate.modes
     assert modes is not None  # the plate is elastic
-    of_rigid = np.zeros(0 if rigid is None else len(rigid.frequencies))
+    rigid_count = 0 if rigid is None else len(rigid.frequencies)
+    of_rigid = np.zeros(rigid_count)
     if modes.frequency_errors is None:
         of_mesh = np.zeros(len(modes.frequencies))
     else:

@@ -105,18 +105,19 @@ def search_place(plate: Plate, measured: Measured, place: Place | None = None) -
     places = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
     matched = _over_the_plate(plate, measured, shapes.reshape(len(places), -1))
     misfit = matched.misfit.reshape(len(y), len(x))
+    # minima that explain much less than the best are not refined
     worst = misfit.min() + _WORSE * (1.0 - misfit.min())
     fits = []
     for lowest in local_minima(misfit)[:_REFINED]:
-        if matched.misfit[lowest] <= worst:
-            start = [
-                *places[lowest],
-                np.log(matched.impulse[lowest]),
-                np.log(matched.duration[lowest]),
-                matched.touch[lowest],
-            ]
-            fits.append(_refined(plate, measured, np.array(start), known=place is not None))
-    step = 0.0 if place is not None else float(np.hypot(x[1] - x[0], y[1] - y[0]))
+        if matched.misfit[lowest] > worst:
+            continue
+        log_impulse = np.log(matched.impulse[lowest])
+        log_duration = np.log(matched.duration[lowest])
+        start = np.array([*places[lowest], log_impulse, log_duration, matched.touch[lowest]])
+        fits.append(_refined(plate, measured, start, known=place is not None))
+    step = 0.0
+    if place is None:
+        step = float(np.hypot(x[1] - x[0], y[1] - y[0]))
     return Search(x, y, misfit, _candidates(plate, measured, fits, _APART * step))
 
 
@@ -128,7 +129,8 @@ def _candidates(
     Places nearer to each other than the least distance [m] are one.
     """
     energies = np.array([float(fit.residual @ fit.residual) for fit in fits])
-    # the variance of the samples, over that of the noise, by the best fit of five parameters
+    # the variance of the samples, over that of the noise, by the best fit of five parameters: over
+    # it the differences of energies are chi-squared
     variance = energies.min() / (np.count_nonzero(measured.heard) - 5)
     candidates: list[Candidate] = []
     for number in np.argsort(energies):

@@ -106,7 +106,9 @@ class SetupErrors:
             deviation = getattr(self, name)
             if not deviation:
                 continue
-            text = f'"{1e3 * deviation:g} mm"' if name == "sensor_place" else f"{deviation:g}"
+            text = f"{deviation:g}"
+            if name == "sensor_place":
+                text = f'"{1e3 * deviation:g} mm"'
             options.append(f"{option} {text}")
         return " ".join(options)
 
@@ -195,7 +197,7 @@ def stretched(problem: Problem, setup: Setup, exponents: Floats) -> Problem:
         modes,
         frequencies=modes.frequencies * modulus**0.5 * thickness**exponents,
         contact=deflection * modes.contact,
-        along=None if modes.along is None else deflection * modes.along,
+        along=_scaled(modes.along, deflection),
         participation=modes.participation / deflection,
         points={name: deflection * reading[name] * shapes for name, shapes in modes.points.items()},
         residuals={
@@ -211,6 +213,11 @@ def stretched(problem: Problem, setup: Setup, exponents: Floats) -> Problem:
     return problem.on_plate(plate, quasi_static)
 
 
+def _scaled(shapes: Floats | None, factor: float) -> Floats | None:
+    """Return mode shapes times a factor, if there are any."""
+    return None if shapes is None else factor * shapes
+
+
 def _of_other_mass(rigid: ModalBasis, deflection: float) -> ModalBasis:
     """Return rigid motions of unit modal mass of a body whose mass changes.
 
@@ -219,8 +226,8 @@ def _of_other_mass(rigid: ModalBasis, deflection: float) -> ModalBasis:
     return replace(
         rigid,
         contact=deflection * rigid.contact,
-        along=None if rigid.along is None else deflection * rigid.along,
-        turning=None if rigid.turning is None else deflection * rigid.turning,
+        along=_scaled(rigid.along, deflection),
+        turning=_scaled(rigid.turning, deflection),
         participation=rigid.participation / deflection,
         points={name: deflection * shapes for name, shapes in rigid.points.items()},
     )
@@ -229,7 +236,9 @@ def _of_other_mass(rigid: ModalBasis, deflection: float) -> ModalBasis:
 def mounted_resonance(sensor: Sensor) -> float | None:
     """Return the mounted resonance of an accelerometer [Hz]; None of one without, and of others."""
     instrument = sensor.instrument
-    return instrument.resonance if isinstance(instrument, Accelerometer) else None
+    if isinstance(instrument, Accelerometer):
+        return instrument.resonance
+    return None
 
 
 def with_resonance(sensor: Sensor, difference: float) -> Sensor:

@@ -239,7 +239,8 @@ def _first_parameters(plate: Plate, start: Candidate, place: Place | None) -> Fl
 def _expected_unknowns(plate: Plate, sensors: int, of_setup: int) -> Floats:
     """Return the means of the unknowns by their priors, in their standard deviations."""
     missing, deviation = compliance_error(plate, plate.problem)
-    of_contact = [1.0 / _NEXT_OCTAVE, 1.0, missing / deviation if deviation else 0.0]
+    of_compliance = missing / deviation if deviation else 0.0
+    of_contact = [1.0 / _NEXT_OCTAVE, 1.0, of_compliance]
     return np.append(of_contact, np.zeros(sensors + len(plate.frequency_errors) + of_setup))
 
 
@@ -252,9 +253,9 @@ def _largest_steps(plate: Plate, measured: Measured, unknowns: int) -> Floats:
     sensors = len(measured.sensors)
     deviations = plate.errors.deviations(sensors)
     of_setup = np.concatenate([_LARGEST_STEPS[:2], np.repeat(_LARGEST_STEPS[2:], sensors)])
-    in_deviations = np.divide(
-        of_setup, deviations, out=np.full(len(deviations), np.inf), where=deviations > 0.0
-    )
+    # what is certain has no deviation, and no limit: it does not move
+    in_deviations = np.full(len(deviations), np.inf)
+    np.divide(of_setup, deviations, out=in_deviations, where=deviations > 0.0)
     of_model = np.full(unknowns - len(deviations), np.inf)
     of_place = 0.03 * (high - low)
     return np.array([*of_place, 0.3, 0.3, 1.0 / measured.rate, *of_model, *in_deviations])
@@ -272,7 +273,9 @@ def _explained(plate: Plate, measured: Measured, parameters: Floats) -> _Explain
     of_model = parameters[_FITTED : -len(setup_deviations)]
     numbers = parameters[-len(setup_deviations) :] * setup_deviations
 
-    here = plate if plate.errors.is_none else plate.under(Setup.of(numbers), names)
+    here = plate
+    if not plate.errors.is_none:
+        here = plate.under(Setup.of(numbers), names)
     position = (float(place[0]), float(place[1]))
     touched = here.at(position)
     forces = _contact_forces(plate, here, touched, position, numbers, names, log_radius, log_speed)
