@@ -54,11 +54,13 @@ def _write_predictions(recognised: Recognised, path: Path) -> None:
     """
     columns = [f"probability_{one_line(name)}" for name in recognised.class_names]
     names = [recognised.class_names[index] for index in recognised.probabilities.argmax(axis=1)]
-    numbers = range(len(names)) if recognised.places is None else recognised.places.tolist()
-    rows = (
-        {"signal": number, "class": name, **dict(zip(columns, values.tolist(), strict=True))}
-        for number, name, values in zip(numbers, names, recognised.probabilities, strict=True)
-    )
+    numbers = list(range(len(names)))
+    if recognised.places is not None:
+        numbers = recognised.places.tolist()
+    rows = []
+    for number, name, values in zip(numbers, names, recognised.probabilities, strict=True):
+        probabilities = dict(zip(columns, values.tolist(), strict=True))
+        rows.append({"signal": number, "class": name, **probabilities})
     write_csv(rows, ["signal", "class", *columns], path)
 
 

@@ -94,12 +94,18 @@ def apply_recogniser(
     >>> recognised.class_names, round(sum(fraction.value for fraction in fractions), 6)
     (('coal', 'gangue'), 1.0)
     """
-    recogniser = model if isinstance(model, Recogniser) else load_recogniser(model)
-    signals = dataset if isinstance(dataset, LabelledSignals) else load_labelled_signals(dataset)
+    recogniser = model
+    if not isinstance(recogniser, Recogniser):
+        recogniser = load_recogniser(recogniser)
+    signals = dataset
+    if not isinstance(signals, LabelledSignals):
+        signals = load_labelled_signals(signals)
     try:
         probabilities = recogniser.probabilities(signals)
     except InputError as error:
-        raise error if isinstance(model, Recogniser) else with_path(model, error) from None
+        if isinstance(model, Recogniser):
+            raise
+        raise with_path(model, error) from None
     predicted = probabilities.argmax(axis=1)
     names = recogniser.class_names
     doubts = doubts_of_version(recogniser) + baseline_doubts(signals)

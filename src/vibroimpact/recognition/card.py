@@ -64,9 +64,9 @@ def _check_format(card: Mapping[str, Any]) -> None:
     if form is None:
         raise InputError("the card has no format; train the model anew")
     if form != FORMAT:
-        by = (
-            f" by vibroimpact {quoted(card['version']).strip(chr(34))}" if "version" in card else ""
-        )
+        by = ""
+        if "version" in card:
+            by = f" by vibroimpact {quoted(card['version']).strip(chr(34))}"
         raise InputError(
             f"the model was saved in the format {quoted(form)}{by}; this version reads "
             f'"{FORMAT}": train it anew'
@@ -77,9 +77,11 @@ def _check_rates(name: str, rates: Any) -> None:
     """Check how often impacts of a class, and of others, are taken for that class: one
     number a draw.
     """
+    if not isinstance(rates, dict):
+        rates = {}
     lengths = set()
     for key in ("true_rate", "false_rate"):
-        values = rates.get(key) if isinstance(rates, dict) else None
+        values = rates.get(key)
         if not (
             isinstance(values, list)
             and 1 <= len(values) <= _MOST_DRAWS

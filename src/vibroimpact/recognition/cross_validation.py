@@ -74,7 +74,10 @@ def cross_validate(
     def validate(classifier: Classifier, seed: int, split: Split) -> tuple[Floats, Parameters]:
         """Return probabilities of the test part, and the parameters chosen in the training part."""
         values = tables[classifier.table]
-        train_groups = None if groups is None else groups[split.train]
+        train_groups = None
+        if groups is not None:
+            train_groups = groups[split.train]
+        # tuned by an inner cross-validation of the training part alone, without the test part
         fitted, parameters = fit_tuned(
             classifier, values[split.train], classes[split.train], train_groups, seed
         )

@@ -98,7 +98,9 @@ def _faults_of(path: Path) -> Iterator[None]:
     except DamageError as error:
         raise with_path(path, InputError(str(error))) from None
     except InputError as error:
-        raise error if str(path.parent) in str(error) else with_path(path, error) from None
+        if str(path.parent) in str(error):
+            raise
+        raise with_path(path, error) from None
     except (PermissionError, BlockingIOError) as error:
         raise with_path(path, InputError(f"it can't be opened: {short_reason(error)}")) from None
     except OSError:
@@ -135,10 +137,13 @@ def _read(file: h5py.File, path: Path, most: int | None, group: str, seed: int) 
     for sensor, variable in signal_variables.items():
         rate, unit = _rate_and_unit(variable, sensor)
         sensors[sensor] = SensorSignals(sample_values[sensor], rate, unit)
+    if classes is not None:
+        classes = classes[kept]
+    sees = SEEN_AT_BEST if _is_computed(path) else None
     signals = LabelledSignals(
         name=one_line(str(attribute(file, "title", path.parent.name))),
         sensors=sensors,
-        classes=None if classes is None else classes[kept],
+        classes=classes,
         class_names=class_names,
         groups={name: numbers[kept] for name, numbers in groups.items()},
         drawn=drawn,
@@ -146,7 +151,7 @@ def _read(file: h5py.File, path: Path, most: int | None, group: str, seed: int) 
         bayes_error=_bayes_error(path),
         total=count,
         check_sum=file_digest(path),
-        bayes_error_sees=SEEN_AT_BEST if _is_computed(path) else None,
+        bayes_error_sees=sees,
         rows=kept,
     )
     # of a drop that failed there is no sample
@@ -155,7 +160,9 @@ def _read(file: h5py.File, path: Path, most: int | None, group: str, seed: int) 
     )
     if not has_samples.any():
         raise InputError("no signal has a sample that is a finite number")
-    return signals if has_samples.all() else signals.only(np.flatnonzero(has_samples))
+    if has_samples.all():
+        return signals
+    return signals.only(np.flatnonzero(has_samples))
 
 
 def _drawn_and_truth(
@@ -258,10 +265,13 @@ def _whole_numbers(name: str, values: NDArray[Any]) -> Indices:
 
 
 def _texts(values: NDArray[Any]) -> NDArray[Any]:
-    texts = []
-    for value in values.tolist():
-        texts.append(value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value))
-    return np.array(texts)
+    return np.array([_text(value) for value in values.tolist()])
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, bytes):
+        return value.decode("utf-8", "replace")
+    return str(value)
 
 
 def _classes(
@@ -279,13 +289,16 @@ def _classes(
         raise InputError(
             "the variable class lacks flag_values or flag_meanings, which name the classes"
         )
-    flags = flags if isinstance(flags, list) else [flags]
+    if not isinstance(flags, list):  # a single number
+        flags = [flags]
     if not all(map(_is_whole_number, flags)) or len(set(flags)) < len(flags):
         raise InputError(
             f"flag_values of the variable class is {quoted(flags)}; it must be a list of "
             "different whole numbers"
         )
-    names = tuple(meanings.split()) if isinstance(meanings, str) else ()
+    names: tuple[str, ...] = ()
+    if isinstance(meanings, str):
+        names = tuple(meanings.split())
     if not names or len(set(names)) < len(names) or not all(map(str.isprintable, names)):
         raise InputError(
             f"flag_meanings of the variable class is {quoted(meanings)}; it must be "

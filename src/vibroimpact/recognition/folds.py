@@ -88,8 +88,11 @@ def split_signals(classes: Indices, groups: Indices | None, folds: int, seed: in
     drawn = [Split(train, test) for train, test in group_folds.split(no_features, classes, groups)]
     if _unevenness(drawn, classes) <= _UNEVEN:
         return drawn
+    # groups of unequal sizes may be drawn unevenly; to deal them is more even, and less random
     dealt = _dealt(classes, groups, folds, seed)
-    return dealt if _unevenness(dealt, classes) < _unevenness(drawn, classes) else drawn
+    if _unevenness(dealt, classes) < _unevenness(drawn, classes):
+        return dealt
+    return drawn
 
 
 def _unevenness(splits: list[Split], classes: Indices) -> float:

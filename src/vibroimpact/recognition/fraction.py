@@ -146,7 +146,9 @@ def estimate_fraction(
     drawn = _adjusted_count(counted_fractions, rates.true, rates.false)
     low, high = np.percentile(drawn, _INTERVAL)
     (value,) = _adjusted_count(
-        np.array([counted / impacts]), np.array([rates.true.mean()]), np.array([rates.false.mean()])
+        np.array([counted / impacts]),
+        np.array([rates.true.mean()]),
+        np.array([rates.false.mean()]),
     )
     return Estimate(float(value), float(low), float(high))
 
@@ -231,6 +233,7 @@ def _trials(
             false=_with_error_of([drawn.false for drawn in drawn_rates]),
         )
         for (fraction, length), estimates in trials.items():
+            # impacts fall one by one, so that a stream has the true fraction only in the mean
             own_impacts = int(generator.binomial(length, fraction))
             own = generator.choice(own_pool, own_impacts)
             others = generator.choice(other_pool, length - own_impacts)

@@ -224,7 +224,9 @@ def _shapes_of(
 
 
 def _name(node: Any) -> str:
-    domain = f" of {quoted(node.domain)}" if node.domain not in _DOMAINS else ""
+    domain = ""
+    if node.domain not in _DOMAINS:
+        domain = f" of {quoted(node.domain)}"
     return f"the operator {quoted(node.op_type)}{domain}"
 
 

@@ -223,9 +223,10 @@ class _NodeIndex:
 
     def _key(self, trees: Indices, nodes: Indices) -> Indices:
         """Return one number for each pair of a tree and a node."""
-        return np.asarray(
-            np.clip(trees, -1, 2**31) * 2**31 + np.clip(nodes, -1, 2**31 - 1), dtype=np.int64
-        )
+        # numbers of no tree or node, however large, must not look like another pair
+        tree = np.clip(trees, -1, 2**31)
+        node = np.clip(nodes, -1, 2**31 - 1)
+        return np.asarray(tree * 2**31 + node, dtype=np.int64)
 
     def find(self, trees: Indices, nodes: Indices) -> Indices:
         """Return the index of each of some nodes."""

@@ -64,6 +64,7 @@ def _losses(chosen: Chosen, values: Floats, split: Split, parameters: Parameters
     losses = np.zeros(values.shape[1])
     for feature in range(values.shape[1]):
         for _ in range(_REPEATS):
+            # permuted, a feature keeps its distribution and tells nothing of the class
             permuted = tested.copy()
             permuted[:, feature] = generator.permutation(tested[:, feature])
             loss = accuracy - balanced_accuracy(fitted.predict(permuted), truth)

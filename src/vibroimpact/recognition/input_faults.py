@@ -81,7 +81,9 @@ def check_groups(
     """
     if group not in signals.groups:
         known = tuple(signals.groups)
-        choice = f"there are {', '.join(known)}" if known else "there are none"
+        choice = "there are none"
+        if known:
+            choice = f"there are {', '.join(known)}"
         raise InputError(
             f'"{group}" is no group of these signals; '
             f"{choice}.{did_you_mean(group, known or GROUPS)}",
@@ -107,15 +109,17 @@ def check_groups(
         )
     rarest_class = min(group_counts, key=lambda number: group_counts[number])
     count = group_counts[rarest_class]
-    folds = default_folds(classes, groups) if folds is None else folds
+    if folds is None:
+        folds = default_folds(classes, groups)
     if count < folds:
         if count > 1:
+            few = f"{count} {group}s"
             remedy = f"or ask for {count} folds"
         else:
+            few = f"{count} {group}"
             remedy = "since training on one can't be tested on another"
         raise InputError(
-            f"{signals.class_names[rarest_class]} is in {count} "
-            f"{group}{'s' if count > 1 else ''}, too few for {folds} folds; "
+            f"{signals.class_names[rarest_class]} is in {few}, too few for {folds} folds; "
             f"give signals of it from {folds} {group}s or more, {remedy}"
         )
     return groups
@@ -134,7 +138,9 @@ def check_lengths(signals: LabelledSignals, classes: Indices) -> None:
             shortest = int(own_lengths.min())
             longest = int(own_lengths.max())
             if not ((other_lengths >= shortest) & (other_lengths <= longest)).any():
-                extent = f"{shortest}" if shortest == longest else f"{shortest} to {longest}"
+                extent = f"{shortest} to {longest}"
+                if shortest == longest:
+                    extent = f"{shortest}"
                 raise InputError(
                     "the length of a signal reveals its class: those of "
                     f"{signals.class_names[number]} have {extent} samples at {sensor}, and "
@@ -177,14 +183,19 @@ def _likely_copies(samples_by_sensor: list[Floats]) -> list[list[int]]:
     """
     silent = np.all([np.ptp(samples, axis=1) == 0.0 for samples in samples_by_sensor], axis=0)
     loud = np.flatnonzero(~silent)
-    sizes = np.sqrt(sum(np.sum(samples[loud] ** 2, axis=1) for samples in samples_by_sensor))
+    # each sum projects a signal, of all sensors, onto a random direction: copies stay together
     random = np.random.default_rng(0)
-    sums = sum(
-        samples[loud] @ random.standard_normal((samples.shape[1], _SUMS))
-        for samples in samples_by_sensor
-    )
-    pairs = cKDTree(sums / sizes[:, None]).query_pairs(_COPY * _SUMS, output_type="ndarray")
-    ordered: list[list[int]] = np.sort(loud[pairs], axis=1)[np.lexsort(pairs.T[::-1])].tolist()
+    energies = np.zeros(len(loud))
+    sums = np.zeros((len(loud), _SUMS))
+    for samples in samples_by_sensor:
+        directions = random.standard_normal((samples.shape[1], _SUMS))
+        energies += np.sum(samples[loud] ** 2, axis=1)
+        sums += samples[loud] @ directions
+    sizes = np.sqrt(energies)
+    neighbours = cKDTree(sums / sizes[:, None])
+    pairs = neighbours.query_pairs(_COPY * _SUMS, output_type="ndarray")
+    ascending = np.lexsort(pairs.T[::-1])
+    ordered: list[list[int]] = np.sort(loud[pairs], axis=1)[ascending].tolist()
     return ordered
 
 

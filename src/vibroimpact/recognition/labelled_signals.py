@@ -94,7 +94,9 @@ class LabelledSignals:
     @property
     def places(self) -> Indices:
         """The place of each signal in its file, from 0."""
-        return np.arange(len(self)) if self.rows is None else self.rows
+        if self.rows is None:
+            return np.arange(len(self))
+        return self.rows
 
     def __len__(self) -> int:
         """Return the number of signals."""
@@ -110,13 +112,16 @@ class LabelledSignals:
         >>> len(both.only(np.array([1])))
         1
         """
+        classes = self.classes
+        if classes is not None:
+            classes = classes[kept]
         return replace(
             self,
             sensors={
                 name: replace(sensor, values=sensor.values[kept])
                 for name, sensor in self.sensors.items()
             },
-            classes=None if self.classes is None else self.classes[kept],
+            classes=classes,
             groups={name: numbers[kept] for name, numbers in self.groups.items()},
             drawn={key: values[kept] for key, values in self.drawn.items()},
             truth={name: values[kept] for name, values in self.truth.items()},

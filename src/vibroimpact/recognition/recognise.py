@@ -214,7 +214,8 @@ def recognise(
     assert signals.classes is not None  # checked
     classes = signals.classes
     groups = signals.groups[group]
-    folds = default_folds(classes, groups) if folds is None else folds
+    if folds is None:
+        folds = default_folds(classes, groups)
     if signals.bayes_error_sees is None:  # of what this program computed there is no recorder
         doubts += recorder_leaks(signals, classes, groups, group, seed)
     progress("features", 0, 1)

@@ -268,7 +268,8 @@ def load_recogniser(directory: str | PathLike[str]) -> Recogniser:
     ('coal', 'gangue')
     """
     folder = Path(directory)
-    folder = folder / FOLDER if (folder / FOLDER).is_dir() else folder
+    if (folder / FOLDER).is_dir():
+        folder = folder / FOLDER
     if not (folder / CARD).is_file():
         raise InputError(f"{directory}: this is no saved model; there is no {CARD}")
     name = CARD  # the file being read: error messages name it

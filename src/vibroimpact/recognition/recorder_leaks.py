@@ -148,14 +148,17 @@ def _leak_description(
 def _median_text(name: str, median: float, unit: str) -> str:
     """Return the median of a quantity with its unit."""
     if name in (LENGTH, ONSET):
-        return f"{median:.10g} sample{'' if median == 1.0 else 's'}"
+        samples = "sample" if median == 1.0 else "samples"
+        return f"{median:.10g} {samples}"
     if name == CLOCK:
         return f"{100.0 * np.expm1(median):+.2g} %"
     if name.startswith("the correlation"):
         return f"{median:.2g}"
     if name == STEP and not median:
         return "none"
-    return f"{median:.4g}{'' if unit in ('', '1') else f' {unit}'}"
+    if unit in ("", "1"):
+        return f"{median:.4g}"
+    return f"{median:.4g} {unit}"
 
 
 def _too_few_groups(classes: Indices, groups: Indices, group: str) -> list[str]:
@@ -168,8 +171,10 @@ def _too_few_groups(classes: Indices, groups: Indices, group: str) -> list[str]:
         return []
     counts = np.bincount(group_classes)
     counts = counts[counts > 0]
-    # with classes of equally many groups exchanged whole, all is apart as it was
-    whole_exchanges = factorial(len(counts)) if len(set(counts.tolist())) == 1 else 1
+    whole_exchanges = 1
+    if len(set(counts.tolist())) == 1:
+        # with classes of equally many groups exchanged whole, all is apart as it was
+        whole_exchanges = factorial(len(counts))
     least_chance = whole_exchanges / _exchanges(counts)
     if least_chance <= _FALSE_ALARM_RATE:
         return []
@@ -189,7 +194,9 @@ def _class_of_groups(classes: Indices, groups: Indices) -> Indices | None:
     group_classes = np.array(
         [classes[np.argmax(group_number == number)] for number in range(len(names))]
     )
-    return group_classes if (group_classes[group_number] == classes).all() else None
+    if not (group_classes[group_number] == classes).all():
+        return None
+    return group_classes
 
 
 def _exchanges(counts: Indices) -> float:
@@ -312,14 +319,18 @@ def _traces(signals: SensorSignals, plates: Indices) -> dict[str, Floats]:
     return traces
 
 
+def _drift(row: Floats) -> float:
+    """Return by how much the mean of the second half of samples is above that of the first."""
+    half = len(row) // 2
+    return float(row[half:].mean() - row[:half].mean())
+
+
 def _quiet_traces(quiet: list[Floats]) -> dict[str, Floats]:
     """Return quantities of the samples of each signal before its onset."""
     traces = {
         "the level before the onset": np.array([row.mean() for row in quiet]),
         "the noise before the onset": np.array([row.std() for row in quiet]),
-        "the drift before the onset": np.array(
-            [row[len(row) // 2 :].mean() - row[: len(row) // 2].mean() for row in quiet]
-        ),
+        "the drift before the onset": np.array([_drift(row) for row in quiet]),
     }
     for lag in (1, 2):
         traces[f"the correlation of samples {lag} apart before the onset"] = np.array(
@@ -332,7 +343,9 @@ def _autocorrelation(row: Floats, lag: int) -> float:
     """Return the correlation of samples that are a lag apart; 0 if all are alike."""
     deviation = row - row.mean()
     power = float(deviation @ deviation)
-    return float(deviation[lag:] @ deviation[:-lag]) / power if power else 0.0
+    if not power:
+        return 0.0
+    return float(deviation[lag:] @ deviation[:-lag]) / power
 
 
 def _step(row: Floats) -> float:
@@ -364,9 +377,9 @@ def _first_beyond(samples: Floats, part: float) -> Indices:
     distance = np.abs(samples - np.median(samples[:, :_FEWEST], axis=1)[:, None])
     peak = distance.max(axis=1)
     onset = np.argmax(distance >= _ONSET * peak[:, None], axis=1)
-    noise = np.array(
-        [row[: max(1, end - 4)].max() for row, end in zip(distance, onset.tolist(), strict=True)]
-    )
+    # the signal may rise in the last samples before the onset
+    quiet = [row[: max(1, end - 4)] for row, end in zip(distance, onset.tolist(), strict=True)]
+    noise = np.array([samples.max() for samples in quiet])
     threshold = np.clip(_ABOVE_NOISE * noise, part * peak, _ONSET * peak)
     return np.asarray(np.argmax(distance >= threshold[:, None], axis=1))
 
@@ -417,15 +430,19 @@ def _shifts(levels: Floats, reach: int) -> Floats:
     vertex of a parabola through the largest value and its neighbours.
     """
     mean = levels.mean(axis=0)
-    correlation = np.fft.irfft(np.fft.rfft(levels) * np.fft.rfft(mean).conj(), _GRID)
+    cross_spectra = np.fft.rfft(levels) * np.fft.rfft(mean).conj()
+    correlation = np.fft.irfft(cross_spectra, _GRID)
     lags = np.arange(-reach, reach + 1)
     near = correlation[:, lags]
+    # one that has a neighbour on either side
     best = np.clip(near.argmax(axis=1), 1, 2 * reach - 1)
     rows = np.arange(len(levels))
     below = near[rows, best - 1]
     top = near[rows, best]
     above = near[rows, best + 1]
     curvature = below - 2.0 * top + above
+    # at an end of the lags the values may still rise
     has_vertex = curvature < 0.0
-    vertex = np.where(has_vertex, 0.5 * (below - above) / np.where(has_vertex, curvature, 1.0), 0.0)
+    vertex = 0.5 * (below - above) / np.where(has_vertex, curvature, 1.0)
+    vertex = np.where(has_vertex, vertex, 0.0)
     return np.asarray(lags[best] + np.clip(vertex, -1.0, 1.0))

@@ -47,7 +47,9 @@ def report_of(recognition: Recognition) -> Report:
         f"{count:,} {name}"
         for name, count in zip(recognition.class_names, recognition.counts, strict=True)
     )
-    seeds = len(recognition.seeds)
+    seeds = "1 seed"
+    if len(recognition.seeds) > 1:
+        seeds = f"{len(recognition.seeds)} seeds"
     files = {name: partial(_write_rows, recognition, name) for name in TABLES}
     card = recognition.recogniser.card
     packages = ", ".join(f"{package} {version}" for package, version in card["packages"].items())
@@ -55,7 +57,7 @@ def report_of(recognition: Recognition) -> Report:
         title=recognition.name[:1].upper() + recognition.name[1:],
         answer=(
             f"{counts}; {recognition.groups} {recognition.group}s, {recognition.folds} folds, "
-            f"{seeds} seed{'s' if seeds > 1 else ''}"
+            f"{seeds}"
         ),
         sentences=list(sentences(recognition)),
         sections=(
@@ -122,9 +124,10 @@ def score_table(recognition: Recognition) -> Table:
     names = list(recognition.scores)
     rows = []
     for cells in score_cells(recognition):
-        kind = kinds[cells[0]]
-        name = cells[0] if kind == CLASSIFIER else f"{cells[0]} ({kind})"
-        rows.append((name, *cells[1:]))
+        name, *scores = cells
+        if kinds[name] != CLASSIFIER:
+            name = f"{name} ({kinds[name]})"
+        rows.append((name, *scores))
     return table_of(SCORE_HEADERS, rows, bold=[names.index(recognition.best)])
 
 
@@ -311,7 +314,8 @@ TABLES = {
 def _write_rows(recognition: Recognition, name: str, path: Path) -> None:
     """Write a table; one without rows has the first columns alone."""
     rows = TABLES[name](recognition)
-    write_csv(rows, list(rows[0]) if rows else _FIRST_COLUMNS[name], path)
+    columns = list(rows[0]) if rows else _FIRST_COLUMNS[name]
+    write_csv(rows, columns, path)
 
 
 def _write_model(recognition: Recognition, path: Path) -> None:
@@ -432,7 +436,8 @@ def _few(recognition: Recognition) -> Iterator[str]:
 
 def _digits(recognition: Recognition) -> int:
     """Return the number of decimals of scores in per cent."""
-    return 0 if coarse(recognition.scores[recognition.best].error) else 1
+    best = recognition.scores[recognition.best]
+    return 0 if coarse(best.error) else 1
 
 
 def _scores(scores: Scores) -> Row:

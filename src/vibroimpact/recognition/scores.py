@@ -83,9 +83,13 @@ class Score:
         # Clopper and Pearson: quantiles of beta distributions
         hits = self.value * self.trials
         misses = self.trials - hits
+        if part > 0.5 and misses > 0.0:
+            return float(beta.ppf(part, hits + 1.0, misses))
         if part > 0.5:
-            return float(beta.ppf(part, hits + 1.0, misses)) if misses > 0.0 else 1.0
-        return float(beta.ppf(part, hits, misses + 1.0)) if hits > 0.0 else 0.0
+            return 1.0
+        if hits > 0.0:
+            return float(beta.ppf(part, hits, misses + 1.0))
+        return 0.0
 
 
 class Bootstrap:
@@ -130,7 +134,9 @@ class Bootstrap:
         seed_mean = values.mean(axis=0)
         all_signals = np.ones(values.shape[1], dtype=bool)
         draws = self._drawn_means(seed_mean, all_signals)
-        trials = self._trials(seed_mean, [all_signals]) if share else None
+        trials = None
+        if share:
+            trials = self._trials(seed_mean, [all_signals])
         return self._scored(float(values.mean()), draws, values.mean(axis=1), trials)
 
     def balanced(self, values: Floats) -> Score:
@@ -170,9 +176,9 @@ class Bootstrap:
         groups = len(np.unique(self._group_number))
         if groups < 2:
             return Score(value, draws, seeds, trials)
-        widening = np.sqrt(self._widening_by_training * groups / (groups - 1.0)) * widening_by_few(
-            groups - 1
-        )
+        # draws with replacement have (groups - 1) / groups of the variance of the groups
+        of_draws = np.sqrt(self._widening_by_training * groups / (groups - 1.0))
+        widening = of_draws * widening_by_few(groups - 1)
         return Score(value, value + widening * (draws - value), seeds, trials)
 
     def _trials(self, values: Floats, parts: list[Bools]) -> float:
@@ -212,14 +218,18 @@ class Bootstrap:
             freedom += groups - 1
             # the signals of a group tell no more than independent ones; and no more than the group
             # where the groups do not differ
-            independent = sizes.sum() if part_deviations.any() else groups
+            independent = groups
+            if part_deviations.any():
+                independent = sizes.sum()
             least_variance += 1.0 / (len(parts) ** 2 * independent)
         mean = float(np.mean(means))
         variance = float(deviations @ deviations)
         if not variance and 0.0 < mean < 1.0 and set(means) == {0.0, 1.0}:
             return np.inf
         # one trial has the variance of a share, mean (1 - mean)
-        relative_variance = variance / (mean * (1.0 - mean)) if variance else 0.0
+        relative_variance = 0.0
+        if variance:
+            relative_variance = variance / (mean * (1.0 - mean))
         # of groups that have signals in several parts, as plates that all classes fall on, each
         # counts once
         freedom = min(freedom, int(has_signals.sum()) - 1)
@@ -242,7 +252,10 @@ def widening_by_training(folds: int | None) -> float:
     >>> widening_by_training(5), widening_by_training(None)
     (1.25, 1.0)
     """
-    return 1.0 if folds is None else 1.0 + 1.0 / (folds - 1.0)
+    if folds is None:
+        return 1.0
+    # the term is the ratio of the test part to its training part
+    return 1.0 + 1.0 / (folds - 1.0)
 
 
 def widening_by_few(freedom: int) -> float:

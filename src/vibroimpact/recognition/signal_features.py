@@ -90,7 +90,9 @@ def baseline_doubts(signals: LabelledSignals) -> list[str]:
         table = feature_table(_continued(sensor_signals), sensor_signals.rate, [_PEAK])
         large = is_large(np.abs(table.offset) + table.drift, table[_PEAK])
         if large.any():
-            unit = "" if sensor_signals.unit in ("", "1") else f" {sensor_signals.unit}"
+            unit = ""
+            if sensor_signals.unit not in ("", "1"):
+                unit = f" {sensor_signals.unit}"
             offset = float(np.abs(table.offset[large]).max())
             drift = float(table.drift[large].max())
             baselines = f"baselines with offsets of up to {offset:.4g}{unit}"

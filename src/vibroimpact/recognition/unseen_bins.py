@@ -68,7 +68,9 @@ def bins_of(signals: LabelledSignals) -> list[tuple[str, str, Bools]]:
                 bins.append((key, _levels_text(bin_levels), np.isin(values, bin_levels)))
             continue
         edges = np.quantile(values, np.linspace(0.0, 1.0, _BINS + 1))
-        bin_number = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, _BINS - 1)
+        # the largest value is in the last bin
+        bin_number = np.searchsorted(edges, values, side="right") - 1
+        bin_number = np.clip(bin_number, 0, _BINS - 1)
         for number in range(_BINS):
             inside = bin_number == number
             if inside.any():
@@ -76,11 +78,13 @@ def bins_of(signals: LabelledSignals) -> list[tuple[str, str, Bools]]:
     return bins
 
 
+def _level_text(level: Any) -> str:
+    return f"{level:.3g}" if isinstance(level, float) else str(level)
+
+
 def _levels_text(levels: NDArray[Any]) -> str:
     """Return the values or names of a range in words."""
-    texts = [
-        f"{level:.3g}" if isinstance(level, float) else str(level) for level in levels.tolist()
-    ]
+    texts = [_level_text(level) for level in levels.tolist()]
     if len(texts) > 3:
         return f"{texts[0]} to {texts[-1]}"
     return ", ".join(texts)
