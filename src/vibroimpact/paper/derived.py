@@ -71,10 +71,9 @@ def mesh_mass(kind: int, gravity: float) -> tuple[float, float]:
     """
     force = printed(f"type{kind}.max_force")
     acceleration = printed(f"type{kind}.max_acceleration")
-    return (
-        (force.value - force.half) / (acceleration.value + acceleration.half + gravity),
-        (force.value + force.half) / (acceleration.value - acceleration.half + gravity),
-    )
+    least = (force.value - force.half) / (acceleration.value + acceleration.half + gravity)
+    most = (force.value + force.half) / (acceleration.value - acceleration.half + gravity)
+    return least, most
 
 
 def fall_beyond_touch(kind: int, gravity: float) -> float:

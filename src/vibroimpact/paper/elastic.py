@@ -61,9 +61,9 @@ def section_5_1(runs: Runs) -> ReportSection:
     )
     for kind in (2, 3):
         for quantity, name in _IMPACT_COLUMNS.items():
-            unresolved = (
-                unresolved_range(runs, kind, name) if quantity != "max_acceleration" else None
-            )
+            unresolved = None
+            if quantity != "max_acceleration":
+                unresolved = unresolved_range(runs, kind, name)
             rows += values_by_treatment(
                 runs, kind, printed(f"type{kind}.{quantity}"), in_first_impact(name), unresolved
             )
@@ -268,7 +268,9 @@ def _at_touch(runs: Runs, kind: int) -> ComparedValue:
     sag = _sag(runs.problem(f"type{kind}-superposed"))
     least, most = (weight * gravity * fall for weight in mesh_mass(kind, gravity))
     most *= 1.0 + sag / fall
-    lower = f", and a static deflection of the plate by up to {1e6 * sag:.1f} µm" if sag else ""
+    lower = ""
+    if sag:
+        lower = f", and a static deflection of the plate by up to {1e6 * sag:.1f} µm"
     phrase = (
         f"with the mass of the mesh that the printed force and acceleration imply{lower}: "
         f"{least:.6f} to {most:.6f} J"
@@ -290,10 +292,9 @@ def _sag(problem: Problem) -> float:
     modes = problem.plate.modes
     if modes is None:
         return 0.0
-    return float(
-        problem.gravity
-        * (modes.contact * modes.participation[:, 2] / modes.angular_frequencies**2).sum()
-    )
+    # gravity acts on a mode by its participation, and a mode of unit mass has the stiffness omega^2
+    by_gravity = modes.contact * modes.participation[:, 2] / modes.angular_frequencies**2
+    return float(problem.gravity * by_gravity.sum())
 
 
 def _released(runs: Runs, kind: int) -> list[ComparedValue]:
@@ -321,10 +322,11 @@ def _from_height(runs: Runs, kind: int) -> ComparedValue:
     height = printed(f"type{kind}.rebound_height").value
     radius = float(runs.problem("type1-variable").sphere.contact_offset)
     response = runs.treated(kind, "identified")
-    climbed = energy_at_separation(response) - mass * gravity * float(
-        response.impacts["rebound_height_m"][0] - radius
-    )
-    low = mesh_mass(kind, gravity)[0] * gravity * (height - radius)
+    # at separation the sphere is below its height at touch, and climbs that far on top of the rise
+    rise = float(response.impacts["rebound_height_m"][0] - radius)
+    climbed = energy_at_separation(response) - mass * gravity * rise
+    least_mass, _ = mesh_mass(kind, gravity)
+    low = least_mass * gravity * (height - radius)
     high = mass * gravity * (height - radius) + climbed
     reason = (
         "the mesh has lost a little mass, and the sphere separates while it is still "
@@ -370,7 +372,9 @@ def section_5_3(runs: Runs) -> ReportSection:
     """Return section 5.3: the peaks of the plate's motion and energies."""
     rows: list[ComparedValue] = [_impact_speed(runs)]
     for name, column in _PLATE_COLUMNS.items():
-        unresolved = unresolved_range(runs, 3, column) if column in PEAKS else None
+        unresolved = None
+        if column in PEAKS:
+            unresolved = unresolved_range(runs, 3, column)
         rows += values_by_treatment(
             runs, 3, printed(f"plate.{name}"), largest_of(history_column(column)), unresolved
         )
@@ -446,7 +450,8 @@ def _peak_decay(runs: Runs) -> tuple[TextTable, str]:
             peaks = after_each_impact(history_column(_PLATE_COLUMNS[name]))(response)
             cells.append((treatment, name, *(f"{100.0 * peak / peaks[0]:.2f}" for peak in peaks)))
             remaining[name] = float(peaks[-1] / peaks[0])
-        slowest += [treatment] if remaining["acceleration"] == max(remaining.values()) else []
+        if remaining["acceleration"] == max(remaining.values()):
+            slowest.append(treatment)
     headers = (
         "Treatment",
         "Peak of the plate's centre of mass",

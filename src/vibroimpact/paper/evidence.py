@@ -92,7 +92,9 @@ class ImpactSplines(NamedTuple):
         """Return the shortfall of a column against the theory [%], for a simulation of
         `DAMPINGS`.
         """
-        simulation = self.constant if damping == "constant" else self.variable
+        simulation = self.variable
+        if damping == "constant":
+            simulation = self.constant
         return np.asarray(
             100.0 * (1.0 - simulation[column](logarithm) / self.theory[column](restitution))
         )

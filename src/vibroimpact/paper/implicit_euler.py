@@ -106,7 +106,7 @@ def unresolved_impact(problem: Problem, step: float, phases: Floats) -> dict[str
         losses = losses + method.losses(previous, state, force)
         for name, value in _peak_quantities(problem, method, previous, state, force).items():
             peaks[name] = np.maximum(peaks[name], np.abs(value))
-        sinking_speed = centre_of(state, method.mass)[1]
+        _, sinking_speed = centre_of(state, method.mass)
         receding = (method.approach(state) < 0.0) & (sinking_speed < 0.0)
         for name, value in _separation_quantities(method, state, losses).items():
             at_separation[name] = np.where(receding & ~separated, value, at_separation[name])
@@ -123,7 +123,9 @@ def unresolved_impact(problem: Problem, step: float, phases: Floats) -> dict[str
 def _half_period(problem: Problem) -> float:
     """Return half a period of the lowest mode of the plate [s]; 0 for a rigid one."""
     plate = problem.plate.modes
-    return 0.0 if plate is None else np.pi / float(plate.angular_frequencies.min())
+    if plate is None:
+        return 0.0
+    return np.pi / float(plate.angular_frequencies.min())
 
 
 def _peak_quantities(
@@ -133,10 +135,13 @@ def _peak_quantities(
     # the slices pick the modes of each body among the oscillators
     _, on_sphere, on_plate = slices_of(problem)
     plate = problem.plate.modes
-    centre_weights = np.zeros(0) if plate is None else plate.participation[:, 2] / plate.mass
+    centre_weights = np.zeros(0)
+    if plate is not None:
+        # the momentum of each mode along z, over the mass: its part in the motion of the centre
+        centre_weights = plate.participation[:, 2] / plate.mass
     acceleration = (state.velocity - previous.velocity) / method.step
     kinetic, strain = method.system.energies(state)
-    fall = centre_of(state, method.mass)[0]
+    fall, _ = centre_of(state, method.mass)
     return {
         "max_force_N": force,
         "sphere_strain_J": strain[:, on_sphere].sum(axis=1),
@@ -254,21 +259,22 @@ class _ImplicitEuler:
         start = self.approach(before)
         end = self.approach(after)
         increase = end - start
-        static, _ = self.law.forces(np.maximum(end, 0.0), increase / self.step, self.touch_speed)
+        approach_speed = increase / self.step
+        static, _ = self.law.forces(np.maximum(end, 0.0), approach_speed, self.touch_speed)
         contact_damping = (force - static) * increase
         modal_damping = self.step * (self.system.damping * after.velocity**2).sum(axis=1)
 
         # what the method loses: kinetic energy of the changes of velocities, strain energy of the
         # changes of elongations, and work of the static force beyond the elastic energy stored
-        of_velocities = 0.5 * ((after.velocity - before.velocity) ** 2).sum(axis=1)
+        speed_change = after.velocity - before.velocity
+        of_velocities = 0.5 * (speed_change**2).sum(axis=1)
         elongation = after.displacement - before.displacement
         of_elongations = 0.5 * ((self.system.angular_frequency * elongation) ** 2).sum(axis=1)
         stored_before = self.law.elastic_energy(np.maximum(start, 0.0))
         stored_after = self.law.elastic_energy(np.maximum(end, 0.0))
         of_contact = static * increase - (stored_after - stored_before)
-        return np.array(
-            [contact_damping, modal_damping, of_velocities + of_elongations + of_contact]
-        )
+        by_method = of_velocities + of_elongations + of_contact
+        return np.array([contact_damping, modal_damping, by_method])
 
     def rebound_height(self, problem: Problem, speed: Floats) -> Floats:
         """Return the rebound height of the sphere's centre [m] from its separation speed."""

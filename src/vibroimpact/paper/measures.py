@@ -35,11 +35,14 @@ def falling_potential(response: Response) -> tuple[Floats, Floats]:
     impacts = response.impacts
     problem = response.problem
     gravity = float(problem.gravity)
+    weight = float(problem.sphere.mass) * gravity
+    # a fall begins where the sphere stands still, after rising with the separation speed
     tops = impacts["time_s"] + impacts["duration_s"] + impacts["separation_speed_m_s"] / gravity
     heights = np.append(history["position_m"][0], impacts["rebound_height_m"])
     time = history["time_s"]
     fall = np.searchsorted(tops, time)
-    values = float(problem.sphere.mass) * gravity * (history["position_m"] - heights[fall])
+    values = weight * (history["position_m"] - heights[fall])
+    # NaN breaks the line between two falls, so that the step is not drawn
     breaks = np.flatnonzero(np.diff(fall)) + 1
     return np.insert(time, breaks, time[breaks]), np.insert(values, breaks, np.nan)
 
@@ -67,11 +70,12 @@ def sphere_strain(response: Response) -> tuple[Floats, Floats]:
         if step <= 0.0:
             elongation[index] = elongation[index - 1]
             continue
+        # one solution follows the force, late by a time constant; what differs from it decays
         lag = (force[index] - force[index - 1]) / step / rate
         begin = (force[index - 1] - lag) / stiffness
-        elongation[index] = (force[index] - lag) / stiffness + (
-            elongation[index - 1] - begin
-        ) * np.exp(-rate * step)
+        end = (force[index] - lag) / stiffness
+        left = (elongation[index - 1] - begin) * np.exp(-rate * step)
+        elongation[index] = end + left
     return time, 0.5 * stiffness * elongation**2
 
 
@@ -85,11 +89,8 @@ def sphere_rotation(response: Response) -> tuple[Floats, Floats]:
 
 def energy_at_separation(response: Response) -> float:
     """Return the kinetic energy of the sphere's centre at the first separation [J]."""
-    return (
-        0.5
-        * float(response.problem.sphere.mass)
-        * float(response.impacts["separation_speed_m_s"][0]) ** 2
-    )
+    speed = float(response.impacts["separation_speed_m_s"][0])
+    return 0.5 * float(response.problem.sphere.mass) * speed**2
 
 
 def largest_of(timeline: Timeline) -> Measure:
@@ -129,11 +130,8 @@ def plate_energy_part(response: Response) -> float:
     energy released [%], as in the paper.
     """
     history = history_of(response)
-    return (
-        100.0
-        * float(history["plate_kinetic_J"].max() + history["plate_strain_J"].max())
-        / energy_released(response)
-    )
+    largest = float(history["plate_kinetic_J"].max() + history["plate_strain_J"].max())
+    return 100.0 * largest / energy_released(response)
 
 
 MESH_DIGITS = 5
@@ -147,7 +145,15 @@ def kind_of(treatment: str) -> Kind | None:
     """Return the kind of the values computed under a treatment, where the printed value
     alone does not decide it.
     """
-    return Kind.FITTED_MODEL if treatment == "identified" else None
+    if treatment == "identified":
+        return Kind.FITTED_MODEL
+    return None
+
+
+_IDENTIFIED = {2: "fitted to force and rebound alone", 3: "a prediction from Type 2"}
+"""What a value under the identified treatment is, by type."""
+_STEPS = {2: "in steps fitted to Type 2", 3: "in steps found from Type 2"}
+"""Where the steps of unresolved runs are from, by type."""
 
 
 def values_by_treatment(
@@ -177,19 +183,18 @@ def values_by_treatment(
         "no setting of this treatment that was tried keeps what is printed",
         "superposed": "the resolved superposed model gives another value, and "
         "no setting of this treatment that was tried keeps what is printed",
-        "identified": "a prediction from Type 2"
-        if kind == 3
-        else "fitted to force and rebound alone",
+        "identified": _IDENTIFIED[kind],
     }
     if unresolved is not None:
         low, high = unresolved
         explanation = Explanation("", low, high)
-        if explanation.holds(value):
-            few = "agrees with this range within its few digits"
+        if explanation.contains(value):
+            inside = "lies in this range"
+        elif explanation.holds(value):
+            inside = "agrees with this range within its few digits"
         else:
-            few = "does not lie in this range"
-        inside = "lies in this range" if explanation.contains(value) else few
-        steps = "in steps fitted to Type 2" if kind == 2 else "in steps found from Type 2"
+            inside = "does not lie in this range"
+        steps = _STEPS[kind]
         phrase["superposed"] += (
             f". A hypothesis: unresolved, on a coarse mesh and {steps}, it gives {low:.4g} "
             f"to {high:.4g} {value.unit}, and the printed value {inside}"

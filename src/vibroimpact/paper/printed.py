@@ -121,8 +121,11 @@ def printed_values() -> Mapping[str, PrintedValue]:
     values: dict[str, PrintedValue] = {}
     for entry in _library()["value"]:
         texts = entry["text"]
-        for number, text in enumerate([texts] if isinstance(texts, str) else texts, start=1):
-            which = "" if isinstance(texts, str) else f".{number}"
+        is_single = isinstance(texts, str)
+        if is_single:
+            texts = [texts]
+        for number, text in enumerate(texts, start=1):
+            which = "" if is_single else f".{number}"
             value = PrintedValue(
                 **{
                     **entry,

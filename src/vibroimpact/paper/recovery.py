@@ -95,7 +95,9 @@ def recover_parameters(runs: Runs) -> RecoveredParameters:
     splines = impact_splines(runs)
     evidence, fit = _joint_fit(evidence_of(splines))
     restitution, logarithm = fit.x
-    deviations = np.sqrt(np.diag(np.linalg.inv(fit.jac.T @ fit.jac)))
+    # residuals are in standard deviations, so that this is the covariance of the estimates
+    covariance = np.linalg.inv(fit.jac.T @ fit.jac)
+    deviations = np.sqrt(np.diag(covariance))
     penetration = _in_metres(logarithm, deviations[1])
     given = np.log10(printed("full_damping_penetration").value)
     round_values = float(f"{restitution:.2g}"), float(f"{penetration.value:.1g}")
@@ -126,13 +128,10 @@ def off_joint(recovered: RecoveredParameters, evidence: Evidence) -> float:
     """Return the distance of the joint estimate from a piece of evidence, in half-widths
     of its band: at most 1 inside the band.
     """
-    pairs = zip(
-        recovered.alone[evidence.name], (recovered.restitution, recovered.penetration), strict=True
-    )
-    return (
-        max(alone.apart(joint.value) for alone, joint in pairs if alone is not None)
-        / evidence.half_width
-    )
+    joint = (recovered.restitution, recovered.penetration)
+    pairs = zip(recovered.alone[evidence.name], joint, strict=True)
+    apart = [alone.apart(together.value) for alone, together in pairs if alone is not None]
+    return max(apart) / evidence.half_width
 
 
 def penetration_bands(recovered: RecoveredParameters, penetration: float) -> tuple[bool, ...]:
@@ -164,7 +163,8 @@ def implied_restitution(evidence: Evidence, restitutions: Floats, penetrations: 
     penetrations : array
         Full-damping penetrations [m].
     """
-    residuals = evidence.standardised(restitutions[None, :], np.log10(penetrations)[:, None])
+    log_penetrations = np.log10(penetrations)
+    residuals = evidence.standardised(restitutions[None, :], log_penetrations[:, None])
     squares = np.sum(residuals**2, axis=-1)
     # evidence may be independent of the penetration
     squares = np.broadcast_to(squares, (len(penetrations), len(restitutions)))
@@ -176,7 +176,9 @@ def implied_restitution(evidence: Evidence, restitutions: Floats, penetrations: 
     right = squares[rows, inside + 1]
     # vertex of the parabola, in steps of the grid from its middle point
     vertex = 0.5 * (left - right) / (left - 2.0 * middle + right)
-    implied = restitutions[inside] + vertex * (restitutions[1] - restitutions[0])
+    grid_step = restitutions[1] - restitutions[0]
+    implied = restitutions[inside] + vertex * grid_step
+    # lowest at an end of the grid, the minimum lies outside
     return np.where(lowest == inside, implied, np.nan)
 
 
@@ -227,7 +229,8 @@ def _single_estimate(evidence: Evidence, at: Floats, which: int) -> Estimate | N
     """
 
     def residuals(x: Floats) -> Floats:
-        parameters = [x[0] if number == which else value for number, value in enumerate(at)]
+        parameters = list(at)
+        parameters[which] = x[0]
         return evidence.standardised(*parameters)
 
     fit = _fit(residuals, at[which : which + 1])
@@ -303,13 +306,14 @@ def _implied_table(recovered: RecoveredParameters) -> TextTable:
     for evidence in recovered.evidence:
         restitution_alone, penetration_alone = recovered.alone[evidence.name]
         known = "rounding" if evidence.freedom is None else "scatter"
+        used = "yes" if evidence.joint else "no"
         cells.append(
             (
                 evidence.name,
                 _estimate_text(restitution_alone, 1.0, evidence.half_width),
                 _estimate_text(penetration_alone, 1e3, evidence.half_width),
                 known,
-                "yes" if evidence.joint else "no",
+                used,
             )
         )
     cells.append(
@@ -351,17 +355,18 @@ def _coefficients_table(recovered: RecoveredParameters) -> TextTable:
 
 
 def _joint_words(recovered: RecoveredParameters) -> str:
-    single = (
-        f"There is no second solution between e_h = {RESTITUTIONS[0]:g} and "
-        f"{RESTITUTIONS[1]:g}, d_max = {1e6 * PENETRATIONS[0]:g} "
-        f"and {1e6 * PENETRATIONS[1]:g} µm: the first rebound rises with d_max, and the "
-        "rebounds of the theory rise with e_h, all the way."
-    )
+    single = "A second solution is not excluded."
+    if recovered.single:
+        single = (
+            f"There is no second solution between e_h = {RESTITUTIONS[0]:g} and "
+            f"{RESTITUTIONS[1]:g}, d_max = {1e6 * PENETRATIONS[0]:g} "
+            f"and {1e6 * PENETRATIONS[1]:g} µm: the first rebound rises with d_max, and the "
+            "rebounds of the theory rise with e_h, all the way."
+        )
     return (
         f"Jointly e_h = {_estimate_text(recovered.restitution)} and d_max = "
         f"{_estimate_text(recovered.penetration, 1e3)} mm; the largest "
-        f"residual is {recovered.worst:.1f} standard deviations. "
-        f"{single if recovered.single else 'A second solution is not excluded.'}"
+        f"residual is {recovered.worst:.1f} standard deviations. {single}"
     )
 
 
@@ -400,15 +405,17 @@ def _round_value_words(recovered: RecoveredParameters, runs: Runs) -> str:
         abs(float(value) - printed(name).value) / printed(name).half
         for name, value in rounded.items()
     )
+    come = "all come" if worst <= 1.0 else "not all come"
     off = (recovered.restitution.value - restitution) / recovered.restitution.deviation
+    side = "below" if off > 0.0 else "above"
     return (
         f"At the round values, e_h = {restitution:g} and d_max = {1e3 * penetration:g} mm, "
         f"the {len(rounded)} numbers with an uncertainty "
         f"from rounding are off by at most {fixed(worst, 2)} times half a "
         "unit of their last digit: "
-        f"{'all come' if worst <= 1.0 else 'not all come'} out as printed. The "
+        f"{come} out as printed. The "
         f"round e_h lies {fixed(abs(off), 1)} standard deviations "
-        f"{'below' if off > 0.0 else 'above'} the joint estimate."
+        f"{side} the joint estimate."
     )
 
 

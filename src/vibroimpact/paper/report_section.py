@@ -121,12 +121,16 @@ class ComparedValue:
     @property
     def allowed(self) -> float:
         """Allowed difference [printed unit]."""
-        return self.printed.half if self.tolerance is None else self.tolerance
+        if self.tolerance is None:
+            return self.printed.half
+        return self.tolerance
 
     @property
     def difference(self) -> float:
         """Relative difference, computed less printed; NaN if the printed value is zero."""
-        return self.computed / self.printed.value - 1.0 if self.printed.value else math.nan
+        if not self.printed.value:
+            return math.nan
+        return self.computed / self.printed.value - 1.0
 
     @property
     def explanation(self) -> Explanation | None:
@@ -143,7 +147,9 @@ class ComparedValue:
         """Reason why the value is not reproduced; empty if it is reproduced or fitted."""
         if self.verdict in (Verdict.REPRODUCED, Verdict.FITTED):
             return ""
-        return self.explanation.reason if self.explanation else self.otherwise
+        if self.explanation is None:
+            return self.otherwise
+        return self.explanation.reason
 
     @property
     def verdict(self) -> Verdict:
@@ -152,7 +158,9 @@ class ComparedValue:
             return Verdict.FITTED
         if self._agrees:
             return Verdict.REPRODUCED
-        return Verdict.EXPLAINED if self.explanation else Verdict.NOT_REPRODUCED
+        if self.explanation is None:
+            return Verdict.NOT_REPRODUCED
+        return Verdict.EXPLAINED
 
     @property
     def _agrees(self) -> bool:

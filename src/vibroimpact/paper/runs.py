@@ -60,9 +60,9 @@ class Runs:
 
     def treated(self, kind: int, treatment: str) -> Response:
         """Return the response of Type 2 or 3 (`kind`) under one of the `TREATMENTS`."""
-        return self.response(
-            f"type{kind}" if treatment == "consistent" else f"type{kind}-{treatment}"
-        )
+        if treatment == "consistent":
+            return self.response(f"type{kind}")
+        return self.response(f"type{kind}-{treatment}")
 
     @cached_property
     def calibration(self) -> Calibration:

@@ -104,12 +104,13 @@ def contact_pulses(runs: Runs) -> Mapping[tuple[str, str, int], ContactPulse]:
             duration = float(response.impacts["duration_s"][impact - 1])
             times = np.linspace(0.0, duration, _POINTS)
             # slightly inside, so that both end points belong to the contact
-            history = response.at(touch + np.clip(times, 1e-9 * duration, (1.0 - 1e-9) * duration))
+            inside = np.clip(times, 1e-9 * duration, (1.0 - 1e-9) * duration)
+            history = response.at(touch + inside)
             for quantity, (column, largest, when) in QUANTITIES.items():
-                at = float(response.impacts[when][impact - 1]) - touch
-                pulses[name, quantity, impact] = _contact_pulse(
-                    times, history[column], at, float(response.impacts[largest][impact - 1])
-                )
+                peak_time = float(response.impacts[when][impact - 1]) - touch
+                peak = float(response.impacts[largest][impact - 1])
+                pulse = _contact_pulse(times, history[column], peak_time, peak)
+                pulses[name, quantity, impact] = pulse
     return pulses
 
 
@@ -140,18 +141,21 @@ def error_range(
     """
     theory = contact_pulses(runs)["theory", quantity, impact]
     simulation = contact_pulses(runs)[damping, quantity, impact]
+    # the samples of one run may meet its peak, while those of the other miss theirs by most
     lowest = theory.lowest(step)
-    least = 100.0 * (1.0 - simulation.value / lowest) if lowest > 0.0 else -math.inf
-    return least, 100.0 * (1.0 - simulation.lowest(step) / theory.value)
+    least = -math.inf
+    if lowest > 0.0:
+        least = 100.0 * (1.0 - simulation.value / lowest)
+    largest = 100.0 * (1.0 - simulation.lowest(step) / theory.value)
+    return least, largest
 
 
 def grid_error(runs: Runs, step: float, quantity: str, damping: str, impact: int) -> float:
     """Return the error of peaks sampled at multiples of `step` [s] from the start of each
     run [%]; NaN without samples in a contact.
     """
-    theory, simulation = (
-        grid_samples(runs, name, step, quantity, impact)[1] for name in ("theory", damping)
-    )
+    _, theory = grid_samples(runs, "theory", step, quantity, impact)
+    _, simulation = grid_samples(runs, damping, step, quantity, impact)
     if len(theory) and len(simulation):
         return 100.0 * (1.0 - float(simulation.max()) / float(theory.max()))
     return math.nan
@@ -165,10 +169,9 @@ def grid_samples(
     """
     touch = float(runs.response(f"type1-{name}").impacts["time_s"][impact - 1])
     peak = contact_pulses(runs)[name, quantity, impact]
-    times = (
-        np.arange(math.ceil(touch / step), math.floor((touch + peak.times[-1]) / step) + 1) * step
-        - touch
-    )
+    first = math.ceil(touch / step)
+    last = math.floor((touch + peak.times[-1]) / step)
+    times = np.arange(first, last + 1) * step - touch
     return times, np.interp(times, peak.times, peak.values)
 
 
@@ -186,7 +189,9 @@ def unsampled_gaps(runs: Runs, without: tuple[str, int] | None = None) -> Floats
     without : tuple of str and int, optional
         Contact to leave out, by damping and impact.
     """
-    left_out = ("constant", 1) if without == ("variable", 1) else without
+    left_out = without
+    if without == ("variable", 1):
+        left_out = ("constant", 1)
     contacts = [contact for contact in CONTACTS if contact != left_out]
     instants = np.array([implied_instants(runs, "compression", *contact) for contact in contacts])
     # NaN, a level above the peak: no time above it
@@ -261,10 +266,12 @@ def _instants(runs: Runs) -> dict[tuple[str, int], ImpliedInstants]:
     for contact in CONTACTS:
         both = [implied_instants(runs, quantity, *contact) for quantity in QUANTITIES]
         distance = min(abs(instant - other) for instant in both[0] for other in both[1])
-        cells = [
-            MISSING if math.isnan(early) else f"{1e6 * early:.1f} or {1e6 * late:.1f}"
-            for early, late in both
-        ]
+        cells = []
+        for early, late in both:
+            cell = MISSING
+            if not math.isnan(early):
+                cell = f"{1e6 * early:.1f} or {1e6 * late:.1f}"
+            cells.append(cell)
         instants[contact] = ImpliedInstants(distance, (*cells, fixed(1e6 * distance, 1)))
     return instants
 
@@ -299,7 +306,8 @@ def _errors_table(runs: Runs) -> TextTable:
     cells = []
     for quantity, damping, impact in _ERRORS:
         which = (quantity, damping, impact)
-        (least, most), (low, high) = (error_range(runs, size, *which) for size in (step, spacing))
+        least, most = error_range(runs, step, *which)
+        low, high = error_range(runs, spacing, *which)
         cells.append(
             (
                 f"{quantity}, {damping} damping, impact {impact}",
@@ -402,6 +410,9 @@ def _crossings(times: Floats, values: Floats, top: int, levels: Floats) -> tuple
     Running maxima make both flanks monotonic: the force of IMPACT may rise again slightly before
     separation, as its damping fades out.
     """
-    up = np.maximum.accumulate(values[: top + 1])
-    down = np.maximum.accumulate(values[top:][::-1])
-    return np.interp(levels, up, times[: top + 1]), np.interp(levels, down, times[top:][::-1])
+    rising = np.maximum.accumulate(values[: top + 1])
+    # from the end on, as np.interp needs ascending values
+    falling = np.maximum.accumulate(values[top:][::-1])
+    reached = np.interp(levels, rising, times[: top + 1])
+    left = np.interp(levels, falling, times[top:][::-1])
+    return reached, left

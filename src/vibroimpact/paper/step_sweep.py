@@ -72,7 +72,9 @@ class StepSweep:
 
 def superposed(runs: Runs, kind: int, mesh: Mesh) -> Problem:
     """Return the superposed problem of Type 2 or 3 on one of the `MESHES` of the sphere."""
-    return runs.problem(f"type{kind}-superposed") if mesh == "fine" else coarse(kind, MODES[-1])
+    if mesh == "fine":
+        return runs.problem(f"type{kind}-superposed")
+    return coarse(kind, MODES[-1])
 
 
 @cache
@@ -103,16 +105,21 @@ def resolved_impact(problem: Problem) -> dict[str, float]:
     """
     response = simulate(replace(problem, impacts=1, duration=None))
     impact = {name: float(values[0]) for name, values in response.impacts.items()}
-    contact_times = np.linspace(0.0, impact["duration_s"], 401)
+    duration = impact["duration_s"]
+    contact_times = np.linspace(0.0, duration, 401)
     times = contact_times
     plate = problem.plate.modes
-    half_period = 0.0 if plate is None else 0.5 / float(plate.frequencies.min())
-    if half_period > impact["duration_s"]:
-        later_times = np.linspace(impact["duration_s"], half_period, 401)
+    half_period = 0.0
+    if plate is not None:
+        half_period = 0.5 / float(plate.frequencies.min())
+    if half_period > duration:
+        # the plate swings through after the sphere has left it
+        later_times = np.linspace(duration, half_period, 401)
         times = np.concatenate([contact_times, later_times])
     history = response.at(impact["time_s"] + times)
     peaks = {name: float(np.abs(history[name]).max()) for name in PEAKS if name in history}
-    peaks["beyond_touch_m"] = float(problem.sphere.contact_offset - history["position_m"].min())
+    lowest = history["position_m"].min()
+    peaks["beyond_touch_m"] = float(problem.sphere.contact_offset - lowest)
 
     separation = len(contact_times) - 1
     end = {name: float(values[separation]) for name, values in history.items()}
@@ -120,7 +127,8 @@ def resolved_impact(problem: Problem) -> dict[str, float]:
     vibrating = ("sphere_vibration_J", "sphere_strain_J", "plate_kinetic_J", "plate_strain_J")
     shares["vibration_J"] = sum(end[name] for name in vibrating)
     shares["modal_damping_J"] = end["sphere_damping_J"] + end["plate_damping_J"]
-    return {**impact, **peaks, **shares, "integrator_J": 0.0}
+    shares["integrator_J"] = 0.0  # a resolved impact has no loss by the method
+    return {**impact, **peaks, **shares}
 
 
 def paper_impact(runs: Runs, kind: int) -> dict[str, float]:

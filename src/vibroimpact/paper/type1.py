@@ -201,7 +201,8 @@ def dampings_within(runs: Runs, part: float) -> Floats:
     # each impact with its own speed, and with dampings about that which was calibrated for it
     dampings = factors * calibration.values[:, None]
     speeds = np.repeat(calibration.observations.speeds, len(factors))
-    single_impacts = replace(runs.problem("type1-variable"), height=None, speed=speeds, impacts=1)
+    drop = runs.problem("type1-variable")
+    single_impacts = replace(drop, height=None, speed=speeds, impacts=1)
     drops = with_law(single_impacts, damping_max=dampings.ravel())
     heights = simulate(drops).impacts["rebound_height_m"].reshape(dampings.shape)
     theory = runs.response("type1-theory").impacts["rebound_height_m"]
@@ -220,7 +221,9 @@ def _fit_of_printed(runs: Runs) -> tuple[Floats, Floats]:
     """
     speeds = runs.response("type1-variable").impacts["approach_speed_m_s"]
     fit = parabola(speeds)
-    return fit, np.abs(parabola(speeds + _ROUNDED * np.eye(len(speeds))) - fit).sum(axis=0)
+    # each speed off by its rounding, one at a time; at worst their effects add up
+    with_one_off = parabola(speeds + _ROUNDED * np.eye(len(speeds)))
+    return fit, np.abs(with_one_off - fit).sum(axis=0)
 
 
 def table2(runs: Runs) -> ReportSection:
@@ -262,9 +265,11 @@ def _sampled_error_row(
     runs: Runs, quantity: str, damping: str, impact: int, error: float
 ) -> ComparedValue:
     """Return an error of Table 2, with the range of the errors of sampled peaks."""
-    # the spacing is estimated without the compression that is tested, so that the test is not
-    # circular
-    left_out = (damping, impact) if quantity == "compression" else None
+    left_out = None
+    if quantity == "compression":
+        # the spacing is estimated without the compression that is tested, so that the test is not
+        # circular
+        left_out = (damping, impact)
     spacing = spacing_bound(runs, left_out)
     low, high = _magnitudes(*error_range(runs, spacing, quantity, damping, impact))
     reason = f"peaks read off samples {1e6 * spacing:.0f} µs apart give {low:.2f} to {high:.2f} %"

@@ -144,7 +144,8 @@ def _resolved_words(runs: Runs) -> str:
     for mesh in ("fine", "coarse"):
         problem = superposed(runs, 2, mesh)
         results.append(_compared_text(resolved_impact(problem)))
-        modes.append(len(problem.sphere.modes.contact) if problem.sphere.modes else 0)
+        sphere_modes = problem.sphere.modes
+        modes.append(len(sphere_modes.contact) if sphere_modes else 0)
         nodes.append(len(problem.models["sphere"].mesh.nodes))
         compliance.append(1e9 * float(problem.facts["sphere_modal_compliance_m_N"]))
     return (
@@ -471,7 +472,8 @@ def _percent_text(part: float, decimals: int = 1) -> str:
 
 
 def _more_text(part: float) -> str:
-    return f"{_percent_text(abs(part))} {'more' if part > 0.0 else 'less'}"
+    direction = "more" if part > 0.0 else "less"
+    return f"{_percent_text(abs(part))} {direction}"
 
 
 def _microseconds(step: float) -> str:

@@ -70,14 +70,17 @@ def comparison_sentence(shown: ComparedQuantity, kinds: tuple[int, ...], runs: R
     if shown.printed:
         printed_values = [printed(shown.printed.format(kind)) for kind in kinds]
     wanted = [value.value for value in printed_values]
-    everything = [value for values in computed.values() for value in values]
-    scale = multiple(shown.unit, everything if any(everything) else wanted)
+    scaled_by = [value for values in computed.values() for value in values]
+    if not any(scaled_by):
+        scaled_by = wanted
+    scale = multiple(shown.unit, scaled_by)
 
     def listed(values: list[float]) -> str:
         return " and ".join(digits(value / scale.size) for value in values)
 
     has_types = len(kinds) > 1
     types = " (Types 2 and 3)" if has_types else ""
+    of_type = " of Type 3" if has_types else ""
     of_treatments = ", ".join(f"{name} {listed(values)}" for name, values in computed.items())
     results = f"{shown.peak}{types}: {of_treatments} {scale.unit}"
     if not printed_values:
@@ -91,8 +94,8 @@ def comparison_sentence(shown: ComparedQuantity, kinds: tuple[int, ...], runs: R
     side = "above" if differences[nearest] > 0.0 else "below"
     difference = f"{digits(100.0 * abs(differences[nearest]), 2)} % {side} it"
     return (
-        f"{results}; printed {paper}. Nearest to that{' of Type 3' if has_types else ''} is the "
-        f"{nearest} treatment, {difference}."
+        f"{results}; printed {paper}. Nearest to that{of_type} is the {nearest} treatment, "
+        f"{difference}."
     )
 
 
@@ -102,4 +105,5 @@ def _bound_clause(names: list[str]) -> str:
         return "none is"
     if len(names) == len(TREATMENTS):
         return "so are all"
-    return f"so {'is' if len(names) == 1 else 'are'} the {' and the '.join(names)} treatment alone"
+    verb = "is" if len(names) == 1 else "are"
+    return f"so {verb} the {' and the '.join(names)} treatment alone"

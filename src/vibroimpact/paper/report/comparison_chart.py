@@ -53,15 +53,14 @@ def comparison_rows(
         Function of an impact, counted from 0, that returns the times shown before and after its
         first touch [s].
     """
-    responses = [line.response for lines in rows.values() for line in lines]
-    views = impact_views(responses, window)
+    all_lines = [line for lines in rows.values() for line in lines]
+    views = impact_views([line.response for line in all_lines], window)
     time = Axis("Time", "s", views=views)
     value = Axis(shown.short, shown.unit)
-    # a response that is in every row is drawn once
-    distinct_lines = dict.fromkeys(line for lines in rows.values() for line in lines)
+    # a response that is in every row is read once
     curves = {
         line: response_line(shown.timeline, line.response, views, line.name, line.role)
-        for line in distinct_lines
+        for line in dict.fromkeys(all_lines)
     }
     levels = _levels(shown, marks, np.concatenate([curve.y for curve in curves.values()]))
     panels = []
@@ -79,13 +78,11 @@ def _levels(shown: ComparedQuantity, marks: Mapping[str, float], values: Floats)
     """
     low = float(np.nanmin(values))
     high = float(np.nanmax(values))
-    reach = _MARK_DISTANCE * (high - low) if high > low else np.inf
-    near = sorted(
-        (sign * value, kind)
-        for kind, value in marks.items()
-        for sign in shown.signs
-        if low - reach <= sign * value <= high + reach
-    )
+    reach = np.inf  # a level curve can't be flattened
+    if high > low:
+        reach = _MARK_DISTANCE * (high - low)
+    signed = [(sign * value, kind) for kind, value in marks.items() for sign in shown.signs]
+    near = sorted(mark for mark in signed if low - reach <= mark[0] <= high + reach)
     shown_values = [low, high, *(level for level, _ in near)]
     span = max(shown_values) - min(shown_values)
     groups: list[list[tuple[float, str]]] = []

@@ -198,7 +198,8 @@ def sphere_chart(shown: ComparedQuantity, runs: Runs) -> Chart:
         marks,
         lambda impact: _window(_CONTACT_DURATIONS * longest_contact(responses, impact)),
     )
-    title = f"Figure {shown.number}: {shown.name}, Types {'1, 2 and 3' if rigid else '2 and 3'}"
+    types = "1, 2 and 3" if rigid else "2 and 3"
+    title = f"Figure {shown.number}: {shown.name}, Types {types}"
     caption = " ".join(
         (
             comparison_sentence(shown, (2, 3), runs),

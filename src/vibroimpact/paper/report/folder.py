@@ -85,7 +85,9 @@ def reproduce_paper(
     if isinstance(only, str):
         only = [only]
     elif only is None:
-        only = missing_parts(folder) if exists else list(PARTS)
+        only = list(PARTS)
+        if exists:
+            only = missing_parts(folder)
         if not only:
             raise InputError(
                 f"{folder}: all parts are there already; make some of them anew with "

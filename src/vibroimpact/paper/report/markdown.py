@@ -22,18 +22,23 @@ _UNITS = {"1": "", "m^2": "m²", "m/s^2": "m/s²", "kg/m^3": "kg/m³", "N/m^1.5"
 def section_text(section: ReportSection) -> str:
     """Return a section as Markdown."""
     parts = [f"### {escape_markdown(section.title)}", *map(escape_markdown, section.paragraphs)]
-    parts += [rows_table(section.rows)] if section.rows else []
+    if section.rows:
+        parts.append(rows_table(section.rows))
     for further in section.tables:
-        parts += [f"**{escape_markdown(further.title)}**"] if further.title else []
+        if further.title:
+            parts.append(f"**{escape_markdown(further.title)}**")
         parts.append(table(further.headers, further.cells))
     return "\n\n".join([*parts, *map(escape_markdown, section.conclusion)]) + "\n"
 
 
 def chart_text(chart: Chart, heading: bool = True) -> str:
     """Return a chart as Markdown: an optional heading, the image, and the caption."""
-    title = f"### {escape_markdown(chart.title)}\n\n" if heading else ""
-    image = f"![{escape_markdown(chart.title)}]({FIGURES}/{chart.name}.png)"
-    return f"{title}{image}\n\n{escape_markdown(chart.caption)}\n"
+    title = escape_markdown(chart.title)
+    image = f"![{title}]({FIGURES}/{chart.name}.png)"
+    parts = [image, escape_markdown(chart.caption)]
+    if heading:
+        parts.insert(0, f"### {title}")
+    return "\n\n".join(parts) + "\n"
 
 
 def rows_table(rows: Sequence[ComparedValue]) -> str:
@@ -43,13 +48,13 @@ def rows_table(rows: Sequence[ComparedValue]) -> str:
     cells = []
     before = None
     for row in rows:
-        again = row.printed is before
+        value_cells = ("", "", "")
+        if row.printed is not before:
+            value_cells = (row.printed.what, row.printed.place, printed_text(row.printed))
         before = row.printed
         cells.append(
             (
-                "" if again else row.printed.what,
-                "" if again else row.printed.place,
-                "" if again else printed_text(row.printed),
+                *value_cells,
                 row.by,
                 computed_text(row),
                 difference_text(row),
@@ -89,7 +94,9 @@ def printed_text(value: PrintedValue) -> str:
     number = value.text.replace("-", "\u2212")
     if "e" in number:
         number = digits(value.value, len(re.sub(r"e.*|\.", "", number)))
-    sign = "" if value.relation == "=" else f"{value.relation}{_NO_BREAK}"
+    sign = ""
+    if value.relation != "=":
+        sign = f"{value.relation}{_NO_BREAK}"
     return f"{sign}{number}{_unit(value)}"
 
 
@@ -115,7 +122,8 @@ def difference_text(row: ComparedValue) -> str:
         return "0"
     if abs(part) < least:
         return f"below {digits(least, 1)}{_NO_BREAK}%"
-    return f"{'+' if part > 0 else ''}{digits(part, 2)}{_NO_BREAK}%"
+    sign = "+" if part > 0 else ""  # a negative number has its own
+    return f"{sign}{digits(part, 2)}{_NO_BREAK}%"
 
 
 def allowed_text(row: ComparedValue) -> str:
@@ -127,7 +135,9 @@ def allowed_text(row: ComparedValue) -> str:
 
 def verdict_text(row: ComparedValue) -> str:
     """Return the verdict and its reason."""
-    return f"{row.verdict.value}: {row.reason}" if row.reason else row.verdict.value
+    if not row.reason:
+        return row.verdict.value
+    return f"{row.verdict.value}: {row.reason}"
 
 
 def escape_markdown(text: str) -> str:
@@ -146,7 +156,9 @@ def _unit(value: PrintedValue) -> str:
     values.
     """
     unit = _UNITS.get(value.unit, value.unit)
-    return _NO_BREAK + unit.replace(" ", _NO_BREAK) if unit else ""
+    if not unit:
+        return ""
+    return _NO_BREAK + unit.replace(" ", _NO_BREAK)
 
 
 def table(headers: Sequence[str], cells: Iterable[Sequence[str]]) -> str:

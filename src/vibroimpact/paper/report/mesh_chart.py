@@ -112,9 +112,11 @@ def _from_aside(mesh: Mesh) -> tuple[Mark, ...]:
         light.append(light_on(normals[visible]))
         edges.append(_visible_edges(group, node_positions))
         # only the shape functions of nodes on the face are nonzero at a generic point of it
-        on_face = np.abs(group.shape_functions(np.array([[0.31, 0.43]]))[0][0]) > _ON_FACE
+        values, *_ = group.shape_functions(np.array([[0.31, 0.43]]))
+        on_face = np.abs(values[0]) > _ON_FACE
         visible_faces = visible.reshape(len(node_positions), -1).all(axis=1)
-        nodes.append(projected(node_positions[visible_faces][:, on_face].reshape(-1, 3)))
+        visible_nodes = node_positions[visible_faces][:, on_face]
+        nodes.append(projected(visible_nodes.reshape(-1, 3)))
     return Facets(np.concatenate(facets), np.concatenate(light)), _line(edges), _dots(nodes)
 
 
@@ -148,7 +150,8 @@ def _edges(fine: int) -> Floats:
 
 def _interrupted(lines: Floats) -> Floats:
     """Return lines (lines, points, 2) as one with gaps, (points, 2)."""
-    return np.concatenate([lines, np.full_like(lines[:, :1], np.nan)], axis=1).reshape(-1, 2)
+    gaps = np.full_like(lines[:, :1], np.nan)
+    return np.concatenate([lines, gaps], axis=1).reshape(-1, 2)
 
 
 def _line(parts: list[Floats]) -> Line:

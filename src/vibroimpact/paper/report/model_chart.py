@@ -97,18 +97,25 @@ def _bar(centre: tuple[float, float], radius: float, top: float, foot: float) ->
     return [Facets(strips, light_on(normals)), _line([high[:1], low, high[-1:]])]
 
 
+_TOWARDS_FRONT = (0.0, -1.0, 0.0)
+_TOWARDS_RIGHT = (1.0, 0.0, 0.0)
+_UPWARDS = (0.0, 0.0, 1.0)
+"""Normals of the visible faces of the plate."""
+
+
 def _plate(length: float, width: float, thickness: float) -> list[Mark]:
     """Return the three visible faces of the plate with their edges, and its thickness."""
+    # corners from the left front one on, counterclockwise as seen from above
     upper = _rectangle(length, width, 0.0)
     lower = _rectangle(length, width, -thickness)
     front = np.concatenate([upper[[0, 1]], lower[[1, 0]]])
-    side = np.concatenate([upper[[1, 2]], lower[[2, 1]]])
-    faces = [projected(face) for face in (front, side, upper)]
-    normals = np.array([(0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)])
+    right = np.concatenate([upper[[1, 2]], lower[[2, 1]]])
+    faces = [projected(face) for face in (front, right, upper)]
+    normals = np.array([_TOWARDS_FRONT, _TOWARDS_RIGHT, _UPWARDS])
     edges = [_line([face, face[:1]]) for face in faces]
-    corner = np.array([0.5 * length, 0.5 * width, -0.5 * thickness])
-    right, height = projected(corner).tolist()
-    label = Label(right, height, f"{_millimetres(thickness)} thick", "left")
+    rear_edge = np.array([0.5 * length, 0.5 * width, -0.5 * thickness])
+    across, up = projected(rear_edge).tolist()
+    label = Label(across, up, f"{_millimetres(thickness)} thick", "left")
     return [Facets(np.array(faces), light_on(normals)), *edges, label]
 
 

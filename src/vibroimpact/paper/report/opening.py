@@ -93,14 +93,20 @@ def summary_blocks(parts: Mapping[str, RenderedPart]) -> list[Block]:
     if not by_part:
         return []
     verdicts = [verdict.value.capitalize() for verdict in Verdict]
-    kinds = [
-        [kind.capitalize(), *map(str, counts.values())]
-        for kind, counts in kind_counts(parts).items()
+    titles = {name: part.title for name, part in parts.items()}
+    titles["all"] = "All"
+    kinds = [_count_row(kind.capitalize(), counts) for kind, counts in kind_counts(parts).items()]
+    rows = [_count_row(titles[name], counts) for name, counts in by_part.items()]
+    return [
+        text_table(["Kind", *verdicts], kinds),
+        text_table(["Part", *verdicts], rows),
+        *_range_blocks(parts),
     ]
-    titles = {**{name: part.title for name, part in parts.items()}, "all": "All"}
-    rows = [[titles[name], *map(str, counts.values())] for name, counts in by_part.items()]
-    tables = [text_table(["Kind", *verdicts], kinds), text_table(["Part", *verdicts], rows)]
-    return [*tables, *_range_blocks(parts)]
+
+
+def _count_row(title: str, counts: Mapping[str, int]) -> list[str]:
+    """Return a row of a table: a title, and the number of each verdict."""
+    return [title, *map(str, counts.values())]
 
 
 def _range_blocks(parts: Mapping[str, RenderedPart]) -> list[Block]:

@@ -157,7 +157,9 @@ def render_part(part: ReportPart, runs: Runs) -> RenderedPart:
         texts.append(section_text(section))
         rows = [_values_row(part.name, row) for row in section.rows]
     # it computes what it shows: an error of it ends the reproduction
-    chart = part.chart(runs) if part.chart is not None else None
+    chart = None
+    if part.chart is not None:
+        chart = part.chart(runs)
     if chart is not None:
         texts.append(chart_text(chart, heading=part.section is None))
         if part.section is None:
@@ -189,7 +191,15 @@ VALUE_COLUMNS = (
 def _values_row(part: str, row: ComparedValue) -> dict[str, Any]:
     """Return a compared value as a row of `values.csv`, in full precision."""
     value = row.printed
-    explanation = row.explanation if row.verdict is Verdict.EXPLAINED else None
+    # a bound has no difference, and a range is given only where it explains
+    is_equation = value.relation == "="
+    difference = row.difference if is_equation else None
+    allowed = row.allowed if is_equation else None
+    range_low = None
+    range_high = None
+    if row.verdict is Verdict.EXPLAINED and row.explanation is not None:
+        range_low = row.explanation.low
+        range_high = row.explanation.high
     return {
         "part": part,
         "name": value.name,
@@ -201,11 +211,11 @@ def _values_row(part: str, row: ComparedValue) -> dict[str, Any]:
         "printed": value.text,
         "by": row.by,
         "computed": row.computed,
-        "difference": row.difference if value.relation == "=" else None,
-        "allowed": row.allowed if value.relation == "=" else None,
+        "difference": difference,
+        "allowed": allowed,
         "verdict": row.verdict.value,
         "why": row.reason,
         "kind": row.kind.value,
-        "range_low": None if explanation is None else explanation.low,
-        "range_high": None if explanation is None else explanation.high,
+        "range_low": range_low,
+        "range_high": range_high,
     }

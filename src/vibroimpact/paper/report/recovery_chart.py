@@ -4,6 +4,7 @@ with a band, and the joint estimate.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -55,21 +56,24 @@ def recovery_chart(runs: Runs) -> Chart:
     e = recovered.restitution
     d = recovered.penetration
     given = printed("full_damping_penetration").value
+    zoom_e, zoom_d = _ZOOM
     close = _Window(
-        (e.value - _ZOOM[0], e.value + _ZOOM[0]), (d.value - _ZOOM[1], d.value + _ZOOM[1])
+        (e.value - zoom_e, e.value + zoom_e),
+        (d.value - zoom_d, d.value + zoom_d),
     )
     searched = _Window(RESTITUTIONS, PENETRATIONS)
     joint = Points(np.array([d.value]), np.array([e.value]), "joint estimate", "mark")
-    widths = np.array([e.value - e.deviation]), np.array([e.value + e.deviation])
+    with_deviation = replace(
+        joint,
+        low=np.array([e.value - e.deviation]),
+        high=np.array([e.value + e.deviation]),
+    )
+    deviation_of_d = d.value + d.deviation * np.array([-1.0, 1.0])
+    round_e, round_d = recovered.round_values
     estimate: tuple[Mark, ...] = (
-        Points(
-            np.array([recovered.round_values[1]]),
-            np.array([recovered.round_values[0]]),
-            "round values",
-            "total",
-        ),
-        Line(d.value + d.deviation * np.array([-1.0, 1.0]), np.full(2, e.value), role="mark"),
-        Points(joint.x, joint.y, joint.name, joint.role, low=widths[0], high=widths[1]),
+        Points(np.array([round_d]), np.array([round_e]), "round values", "total"),
+        Line(deviation_of_d, np.full(2, e.value), role="mark"),
+        with_deviation,
     )
     as_printed = Level(given, f"d_max as printed, {1e6 * given:g} µm", "dotted", upright=True)
     panels = (
@@ -137,16 +141,17 @@ def _lines(recovered: RecoveredParameters, window: _Window) -> list[Mark]:
         if restitution_alone is None and penetration_alone is not None:
             value = penetration_alone.value
             half = evidence.half_width * penetration_alone.deviation
-            bands.append(
-                Spans(np.array([value - half]), np.array([value + half]), role=f"{role} band")
-            )
+            begin = np.array([value - half])
+            end = np.array([value + half])
+            bands.append(Spans(begin, end, role=f"{role} band"))
             lines.append(Level(value, evidence.name, role, upright=True))
         elif restitution_alone is not None:
             half = evidence.half_width * restitution_alone.deviation
-            searched = (low - _SEARCH_MARGIN * half, high + _SEARCH_MARGIN * half)
-            restitutions = np.linspace(
-                max(RESTITUTIONS[0], searched[0]), min(RESTITUTIONS[1], searched[1]), _POINTS
-            )
+            # beyond the window, as a minimum at an end of the grid would not be found
+            margin = _SEARCH_MARGIN * half
+            least = max(RESTITUTIONS[0], low - margin)
+            largest = min(RESTITUTIONS[1], high + margin)
+            restitutions = np.linspace(least, largest, _POINTS)
             line = implied_restitution(evidence, restitutions, penetrations)
             if half < 0.5 * (high - low):  # a wider band would only tint the background
                 bands.append(Band(penetrations, line - half, line + half, role=f"{role} band"))

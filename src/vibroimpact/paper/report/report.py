@@ -37,9 +37,12 @@ def report_of(reproduction: Reproduction) -> Report:
     files = {"report.md": partial(_write_markdown, parts)}
     if reproduction.values:
         files["values.csv"] = partial(_write_values, reproduction)
+    opening = OPENING
+    if not missing:
+        opening = (*OPENING, IN_SHORT)
     return Report(
         title=TITLE,
-        opening=OPENING if missing else (*OPENING, IN_SHORT),
+        opening=opening,
         sections=[summary, *chapters, *_missing_section(missing), *_counts_sections(parts)],
         files=files,
         summary={

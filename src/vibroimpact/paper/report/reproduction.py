@@ -182,7 +182,9 @@ def _read_charts(folder: Path, tables: Mapping[str, Mapping[str, Any]]) -> dict[
         except (OSError, ValueError):
             damaged.append(name)
     if damaged:
-        others = f", and those of {', '.join(damaged[1:])}" if damaged[1:] else ""
+        others = ""
+        if damaged[1:]:
+            others = f", and those of {', '.join(damaged[1:])}"
         raise InputError(
             f"{chart_file(folder, damaged[0])}: the chart is missing or damaged{others}; "
             f"{_repair_hint(folder, *damaged)}"

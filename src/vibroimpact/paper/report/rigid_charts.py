@@ -129,10 +129,10 @@ def _last_impact_note(responses: Responses) -> str:
     """Return the sentence on the start of the last impact relative to the theory."""
     begins = {name: float(response.impacts["time_s"][-1]) for name, response in responses.items()}
     later = {name: time - begins[THEORY] for name, time in begins.items() if name != THEORY}
-    differences = (
-        f"{text(abs(time), 's', 2)} {'late' if time > 0.0 else 'early'} with {name}"
-        for name, time in later.items()
-    )
+    differences = []
+    for name, time in later.items():
+        side = "late" if time > 0.0 else "early"
+        differences.append(f"{text(abs(time), 's', 2)} {side} with {name}")
     return f"The last impact begins {' and '.join(differences)}."
 
 

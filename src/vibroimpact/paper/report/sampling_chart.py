@@ -70,13 +70,11 @@ def sampling_chart(runs: Runs) -> Chart:
 
 def _errors(runs: Runs, quantity: str, step: float, spacing: float) -> Panel:
     """Return the ten errors of a quantity: exact, printed, and the ranges of both spacings."""
-    ranges = {
-        (damping, size): np.array(
-            [error_range(runs, size, quantity, damping, impact) for impact in IMPACTS]
-        )
-        for damping in DAMPINGS
-        for size in (0.0, spacing, step)
-    }
+    ranges = {}
+    for damping in DAMPINGS:
+        for size in (0.0, spacing, step):
+            of_impacts = [error_range(runs, size, quantity, damping, impact) for impact in IMPACTS]
+            ranges[damping, size] = np.array(of_impacts)
     ends = np.concatenate([ranges[damping, spacing] for damping in DAMPINGS])
     low = math.floor(ends.min()) - 1.0
     high = math.ceil(ends.max()) + 1.0
@@ -122,10 +120,11 @@ def _contact(runs: Runs, damping: str, impact: int, step: float) -> Panel:
     the instants at which they were sampled.
     """
     marks: list[Mark] = []
+    pulses = contact_pulses(runs)
     for quantity, role in _CURVES.items():
-        simulation = contact_pulses(runs)[damping, quantity, impact]
+        simulation = pulses[damping, quantity, impact]
         # per cent of the theory's peak
-        scale = 100.0 / contact_pulses(runs)["theory", quantity, impact].value
+        scale = 100.0 / pulses["theory", quantity, impact].value
         name = f"{quantity} of the simulation"
         marks.append(Line(simulation.times, scale * simulation.values, name, role))
         value = 100.0 - table2_error(quantity, damping, impact).value
