@@ -111,7 +111,8 @@ def calibration_of(table: Mapping[str, Any]) -> ToCalibrate:
     """
     whole = dict(table)
     section = whole.get("calibrate", {})
-    section = dict(section or {}) if isinstance(section, dict) else section
+    if isinstance(section, dict):
+        section = dict(section)
     contact: Any = whole.get("contact")
     readable = isinstance(section, dict) and isinstance(contact, dict)
     if not readable or not set(section) <= set(CalibrateSection.model_fields):
@@ -206,7 +207,9 @@ def calibrate_case(
             calibration = _calibrated_law(what, problem, section, progress)
     except InputError as error:
         raise InputError(error.message, f"calibrate.{error.key}".rstrip(".")) from None
-    tuned = names if isinstance(calibration, FrictionCalibration) else (calibration.parameter,)
+    tuned = names
+    if not isinstance(calibration, FrictionCalibration):
+        tuned = (calibration.parameter,)
     # computed values are not checked for slips of units
     not_checked = {*tuned, *(f"contact.{name}" for name in tuned)}
     doubts = _doubts_of_a_run(calibration, not_checked)
@@ -263,6 +266,9 @@ def _calibrated_law(
     moved: Sequence[Moved] = ()
     if isinstance(target, Observations) and target.measured:
         moved = moved_inputs(what.case, evaluated, target)
+    speeds = None
+    if section.speeds is not None:
+        speeds = section.speeds.values()
     return calibrate(
         problem,
         target,
@@ -270,7 +276,7 @@ def _calibrated_law(
         moved=moved,
         weights=section.match,
         degree=section.degree,
-        speeds=None if section.speeds is None else section.speeds.values(),
+        speeds=speeds,
         confidence=section.confidence,
         bootstrap=section.bootstrap,
         seed=section.seed,
@@ -331,6 +337,11 @@ def _under_written_key(message: str, own_target: bool, own_model: bool) -> str:
     return message
 
 
+def _first(value: Any) -> Any:
+    """Return a value, or the first of one for each impact."""
+    return value[0] if isinstance(value, tuple) else value
+
+
 def _with_start(contact: Any, parameter: Any) -> Any:
     """Return a [contact] section with an initial guess of the tuned parameter.
 
@@ -346,10 +357,7 @@ def _with_start(contact: Any, parameter: Any) -> Any:
     law = find_contact_law(section.law)
     if not isinstance(parameter, str) or parameter not in {field.name for field in fields(law)}:
         parameter = None  # one that is not known, or is no name, is reported later
-    values = {
-        key: value[0] if isinstance(value, tuple) else value
-        for key, value in section.parameters.items()
-    }
+    values = {key: _first(value) for key, value in section.parameters.items()}
     for field in fields(law):
         start = field.metadata["example"]
         if field.name in contact or start is None:
@@ -374,7 +382,9 @@ def _with_coefficient(contact: dict[str, Any], names: tuple[str, ...]) -> dict[s
     if not isinstance(friction, dict) or "coefficient" in friction:
         return contact
     law = friction_laws().get(str(friction.get("law")))
-    known = {f"{FRICTION}{field.name}" for field in fields(law)} if law else set()
+    known: set[str] = set()
+    if law:
+        known = {f"{FRICTION}{field.name}" for field in fields(law)}
     # an unknown parameter is reported later
     if f"{FRICTION}coefficient" not in names and known.issuperset(names):
         return contact
@@ -384,4 +394,6 @@ def _with_coefficient(contact: dict[str, Any], names: tuple[str, ...]) -> dict[s
 def _tunable(problem: Problem, parameter: str | None) -> Tunable:
     if parameter not in DAMPINGS:
         return law_parameter(problem, parameter)
-    return modal_damping(problem, "sphere" if parameter == "sphere.damping" else "plate")
+    if parameter == "sphere.damping":
+        return modal_damping(problem, "sphere")
+    return modal_damping(problem, "plate")

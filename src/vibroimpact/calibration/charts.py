@@ -74,7 +74,9 @@ def _parameter_chart(calibration: Calibration) -> Chart:
         fitted = function(smooth)
         band = calibration.fit.band(smooth, calibration.confidence)
         if np.isfinite(band).all():
-            of_what = "band" if calibration.observations.measured else "band of the misfit"
+            of_what = "band of the misfit"
+            if calibration.observations.measured:
+                of_what = "band"
             low, high = calibration.allowed.bounded(np.array([fitted - band, fitted + band]))
             marks.append(
                 Band(smooth, low, high, f"{100.0 * calibration.confidence:g} % {of_what}", "band")
@@ -85,11 +87,16 @@ def _parameter_chart(calibration: Calibration) -> Chart:
             name = f"polynomial of degree {function.degree}"
         marks.append(Line(smooth, fitted, name, "fit"))
         of_impacts = np.allclose([function.slowest, function.fastest], [speeds.min(), speeds.max()])
-        fitted_to = "them" if of_impacts else "the exact values at calibrate.speeds"
+        fitted_to = "the exact values at calibrate.speeds"
+        if of_impacts:
+            fitted_to = "them"
         fitted_too = f", and the {name} fitted to {fitted_to}"
     if calibration.curve is not None:
         marks.append(Line(*calibration.curve, "exact at each speed"))
-    low, high = (None, None) if calibration.intervals is None else calibration.intervals.T
+    low = None
+    high = None
+    if calibration.intervals is not None:
+        low, high = calibration.intervals.T
     marks.append(
         Points(
             speeds,
@@ -141,7 +148,9 @@ def _differences_chart(calibration: Calibration) -> Chart:
             marks.append(
                 Line(np.arange(1.0, len(values) + 1.0), values, way, series(number), marked=True)
             )
-        ticks = tuple(range(1, len(values) + 1)) if len(values) <= _FEW else ()
+        ticks: tuple[int, ...] = ()
+        if len(values) <= _FEW:
+            ticks = tuple(range(1, len(values) + 1))
         panels.append(
             Panel(
                 Axis("Impact", ticks=ticks, integer=True),

@@ -147,4 +147,6 @@ def _drawn(time: Floats, values: Floats) -> tuple[Floats, Floats]:
     kept = visible_points(
         len(time), lambda first, last: (time[first:last], values[first:last]), _COLUMNS
     )
-    return (time, values) if kept is None else (time[kept], values[kept])
+    if kept is None:
+        return time, values
+    return time[kept], values[kept]

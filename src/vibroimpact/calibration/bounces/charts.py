@@ -57,10 +57,11 @@ def _record_chart(rebounds: Rebounds) -> Chart:
         level = np.full(len(bounces.others), float(np.abs(bounces.peak).max()))
         marks.append(Points(bounces.others, level, "other sounds", "muted", bounces.reasons))
     label = f"{record.name[:1].upper()}{record.name[1:]}"
-    panel = Panel(
-        Axis("Time", "s"), Axis(label, "" if record.unit == "1" else record.unit), tuple(marks)
-    )
-    others = ", and other sounds marked by crosses" if len(bounces.others) else ""
+    unit = "" if record.unit == "1" else record.unit
+    panel = Panel(Axis("Time", "s"), Axis(label, unit), tuple(marks))
+    others = ""
+    if len(bounces.others):
+        others = ", and other sounds marked by crosses"
     caption = f"The record, with the bounces of the ball marked at their largest magnitude{others}."
     return Chart("record", "Bounces in the record", ((panel,),), caption, height=2.6)
 
@@ -94,8 +95,11 @@ def restitution_chart(
     bars = {"low": low, "high": high} if whole else {}
     marks.append(Points(speed, fitted.restitution[known], f"{noun}s", "measured", names, **bars))
     panel = Panel(Axis("Approach speed", "m/s"), Axis("Restitution"), tuple(marks))
-    interval = f", with its {100.0 * fitted.confidence:g} % interval" if whole else ""
-    caption = f"{each}{interval}, and the fit{'s' if len(fitted.laws) > 1 else ''}."
+    interval = ""
+    if whole:
+        interval = f", with its {100.0 * fitted.confidence:g} % interval"
+    fits = "fits" if len(fitted.laws) > 1 else "fit"
+    caption = f"{each}{interval}, and the {fits}."
     return Chart(
         "restitution", "Restitution over the approach speed", ((panel,),), caption, height=3.2
     )

@@ -144,8 +144,14 @@ def rebounds_of(
     >>> rebounds.restitution[:2].round(3).tolist(), rebounds.deviation[:2].round(5).tolist()
     ([0.809, 0.8], [0.00674, 6e-05])
     """
-    gravity_input = as_input("gravity", EARTH if gravity is None else gravity, "m/s^2")
-    height_input = None if height is None else as_input("height", height, "m")
+    if gravity is None:
+        gravity = EARTH
+    gravity_input = as_input("gravity", gravity, "m/s^2")
+    height_input = None
+    height_value = None
+    if height is not None:
+        height_input = as_input("height", height, "m")
+        height_value = float(height_input.value)
     contact_time = as_input("contact time", bounces.contact, "s")
     _check_positive(gravity_input)
     if height_input is not None:
@@ -168,11 +174,14 @@ def rebounds_of(
     of_approach, of_separation = _input_effects(
         gravity_input, height_input, contact_time, approach, separation
     )
+    # an input that changes both speeds alike, as gravity in flights, leaves their ratio
     of_restitution = restitution * (of_separation / separation - of_approach / approach)
+    # successive restitutions share touches: their errors by times are correlated
     noise = by_time * bounces.deviation
     covariance = noise @ noise.T
+    variance_by_inputs = np.sum(of_restitution[:, known] ** 2, axis=0)
     deviation = np.full(len(restitution), np.nan)
-    deviation[known] = np.sqrt(np.diag(covariance) + np.sum(of_restitution[:, known] ** 2, axis=0))
+    deviation[known] = np.sqrt(np.diag(covariance) + variance_by_inputs)
     doubts = list(bounces.doubts)
     fitted = known
     if height_input is not None:
@@ -192,6 +201,7 @@ def rebounds_of(
     drop_height, drop_deviation = _drop_height(
         flight_speed[0], gravity_input, height_input, mean_restitution=laws[0]
     )
+    # of a flight, g T / 2, by both of its touches
     by_times = 0.5 * g * np.hypot(bounces.deviation[1:], bounces.deviation[:-1])
     approach_by_inputs = np.sqrt(np.sum(of_approach**2, axis=0))
     separation_by_inputs = np.sqrt(np.sum(of_separation**2, axis=0))
@@ -203,7 +213,7 @@ def rebounds_of(
     return Rebounds(
         bounces=bounces,
         gravity=g,
-        height=None if height_input is None else float(height_input.value),
+        height=height_value,
         approach_speed=approach,
         separation_speed=separation,
         restitution=restitution,

@@ -53,12 +53,14 @@ def report_of(rebounds: Rebounds) -> Report:
     )
 
 
+def _interval_cell(low: str, high: str) -> str:
+    return MISSING if low == MISSING else f"{low} to {high}"
+
+
 def impact_table(rebounds: Rebounds) -> Table:
     """Return the table of the impacts: times, speeds, and restitutions with their intervals."""
-    ends = [known_texts(end, rebounds.deviation) for end in rebounds.intervals.T]
-    intervals = [
-        low if low == MISSING else f"{low} to {high}" for low, high in zip(*ends, strict=True)
-    ]
+    lows, highs = (known_texts(end, rebounds.deviation) for end in rebounds.intervals.T)
+    intervals = [_interval_cell(low, high) for low, high in zip(lows, highs, strict=True)]
     numbers = [str(number + 1) for number in range(len(rebounds.restitution))]
     times = known_texts(rebounds.bounces.time, rebounds.bounces.deviation)
     approach = known_texts(rebounds.approach_speed, rebounds.approach_deviation)
@@ -140,7 +142,9 @@ def _sentence(law: SpeedLaw, confidence: float) -> str:
     }[law.name]
     if not law.scatter:
         return f"{said}."
-    scatter = f"{digits(100.0 * law.scatter, 2)} %" if law.name == POWER else digits(law.scatter, 2)
+    scatter = digits(law.scatter, 2)
+    if law.name == POWER:  # fitted in logarithms, its scatter is relative
+        scatter = f"{digits(100.0 * law.scatter, 2)} %"
     return f"{said}; the restitutions scatter by {scatter} about it."
 
 

@@ -51,7 +51,9 @@ class SpeedLaw:
     def __call__(self, speed: Floats) -> Floats:
         """Return the restitution at approach speeds [m/s]."""
         first = self.coefficients[0]
-        second = self.coefficients[1] if len(self.coefficients) > 1 else 0.0
+        second = 0.0
+        if len(self.coefficients) > 1:
+            second = self.coefficients[1]
         if self.name == POWER:
             return np.asarray(first * speed**second)
         return np.asarray(first + second * speed)
@@ -66,8 +68,9 @@ class SpeedLaw:
 
     def band(self, speed: Floats, confidence: float) -> tuple[Floats, Floats]:
         """Return the ends of the confidence band of the restitution at approach speeds [m/s]."""
-        # the power law is linear in logarithms
-        abscissa = np.log(speed) if self.name == POWER else speed
+        abscissa = speed
+        if self.name == POWER:  # it is linear in logarithms
+            abscissa = np.log(speed)
         design = np.vander(abscissa, len(self.coefficients), increasing=True)
         variance = np.einsum("ni,ij,nj->n", design, self.covariance, design)
         half = half_width(confidence, self.freedom) * np.sqrt(variance)
@@ -138,8 +141,10 @@ def speed_laws(
     ... ][-1]
     [0.8, -0.25]
     """
-    # a mean of several impacts has a part of the variance of the scatter of one
-    variance_shares = np.ones(len(speed)) if count is None else 1.0 / count
+    variance_shares = np.ones(len(speed))
+    if count is not None:
+        # a mean of several impacts has a part of the variance of the scatter of one
+        variance_shares = 1.0 / count
     if shared is None:
         of_restitution = np.zeros((0, len(speed)))
         of_speed = np.zeros((0, len(speed)))
@@ -215,15 +220,19 @@ def _fitted(
         return float(fit(scatter_variance)[2] - freedom)
 
     # the sum of squares is that expected, the degrees of freedom (Paule and Mandel 1982)
-    scatter_variance = _root_of_falling(excess, float(np.var(ordinate))) if freedom else 0.0
+    scatter_variance = 0.0
+    if freedom:
+        scatter_variance = _root_of_falling(excess, float(np.var(ordinate)))
     coefficients, coefficient_covariance, _ = fit(scatter_variance)
     if name == POWER:
         coefficients = np.array([np.exp(coefficients[0]), coefficients[1]])
+    # without a scatter to estimate, the noise is known and its quantiles are those of a normal one
+    own_freedom = freedom if scatter_variance else np.inf
     return SpeedLaw(
         name,
         coefficients,
         coefficient_covariance,
-        freedom=freedom if scatter_variance else np.inf,
+        freedom=own_freedom,
         scatter=float(np.sqrt(scatter_variance)),
     )
 

@@ -64,7 +64,9 @@ def dialog_rows(laws: Iterable[ContactLaw]) -> list[dict[str, Any]]:
                 "penetration_depth_mm": 1000.0 * float(law.full_damping_penetration),
             }
         )
-    return rows if any(row != rows[0] for row in rows) else rows[:1]
+    if all(row == rows[0] for row in rows):
+        return rows[:1]
+    return rows
 
 
 def calibrated_dialog(calibration: Calibration) -> list[dict[str, Any]]:
@@ -93,7 +95,9 @@ def dialog_table(fields: Iterable[Mapping[str, Any]], names: Iterable[str]) -> T
         Names of the impacts.
     """
     impacts = list(fields)
-    row_names = list(names)[: len(impacts)] if len(impacts) > 1 else ["every impact"]
+    row_names = ["every impact"]
+    if len(impacts) > 1:
+        row_names = list(names)[: len(impacts)]
     rows = [
         [name, *(f"{impact[field]:.6g}" for field in _FIELDS)]
         for name, impact in zip(row_names, impacts, strict=True)

@@ -120,7 +120,9 @@ def calibrate(
     stated = problem.to_problem()
     weights = _checked_weights(weights, target)
     _check(stated, confidence, bootstrap)
-    tuned = law_parameter(stated) if tunable is None else tunable
+    tuned = tunable
+    if tuned is None:
+        tuned = law_parameter(stated)
     if isinstance(target, Observations):
         if speeds is not None:
             raise InputError(
@@ -150,7 +152,9 @@ def calibrate(
         limited = limited_to(target.to_problem(), len(sequences.each))
         drops = {"target": simulate(limited).impacts, **drops}
     given = tuned.given[np.minimum(seen.which, len(tuned.given) - 1)]
-    as_given = {} if np.isnan(given).any() else tuned.respond(seen.speeds, given, seen.which)
+    as_given: dict[str, Floats] = {}
+    if not np.isnan(given).any():
+        as_given = tuned.respond(seen.speeds, given, seen.which)
     others = {}
     if _misses(as_given, seen, weights):
         others = other_parameters(stated, tuned, seen, weights)
@@ -191,9 +195,13 @@ def _checked_weights(
     weights: Mapping[str, float] | None, target: StatesProblem | Observations
 ) -> Mapping[str, float]:
     """Return the weights of the quantities to be matched, by default those of the rebound."""
-    wanted = target.wanted if isinstance(target, Observations) else REBOUND
+    wanted = list(REBOUND)
+    if isinstance(target, Observations):
+        wanted = list(target.wanted)
     if weights is None:
-        weights = REBOUND if set(REBOUNDS) & set(wanted) else dict.fromkeys(wanted, 1.0)
+        weights = dict.fromkeys(wanted, 1.0)
+        if set(REBOUNDS) & set(wanted):
+            weights = REBOUND
     if (
         isinstance(target, Observations)
         and "separation_speed" not in wanted
@@ -207,8 +215,9 @@ def _checked_weights(
     check_weights(weights)
     by_friction = [name for name in weights if name in ALONG_PLATE]
     if by_friction:
+        verb = "follows" if len(by_friction) == 1 else "follow"
         raise InputError(
-            f"{', '.join(by_friction)} follow{'s' if len(by_friction) == 1 else ''} from "
+            f"{', '.join(by_friction)} {verb} from "
             "friction, and what is tuned is not of friction; match "
             f"{', '.join(MATCHABLE)}, or tune friction.coefficient",
             "match",
@@ -235,7 +244,9 @@ def _impact_sequences(stated: Problem, tuned: Tunable, matched: MatchedTarget) -
     seen = matched.seen
     function = matched.fit.function
     measured_first_speed = float(seen.speeds[0])
-    first_speed = first_approach_speed(stated) if seen.flights is None else measured_first_speed
+    first_speed = measured_first_speed
+    if seen.flights is None:
+        first_speed = first_approach_speed(stated)
     drop_speeds, drop_values = values_by_function(
         tuned, function, impact_count(stated), first_speed, seen.flights
     )

@@ -146,4 +146,6 @@ def sections_of_case(problem: Problem) -> dict[str, Any]:
 
 def case_name(problem: Problem) -> str:
     """Return the name of the case of a drop; empty if it has none."""
-    return problem.source["name"] if problem.source else ""
+    if not problem.source:
+        return ""
+    return problem.source["name"]

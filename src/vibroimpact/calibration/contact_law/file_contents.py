@@ -41,6 +41,8 @@ def calibration_table(calibration: Calibration) -> dict[str, Any]:
             "approach_speed_m_s": _plain(calibration.curve[0]),
             "value": _plain(calibration.curve[1]),
         }
+    effects = calibration.observations.effects
+    inputs = () if effects is None else effects.inputs
     return {
         "version": __version__,
         "name": case_name(calibration.problem),
@@ -82,9 +84,7 @@ def calibration_table(calibration: Calibration) -> dict[str, Any]:
             }
             for name, correction in calibration.observations.corrections.items()
         },
-        "inputs": []
-        if calibration.observations.effects is None
-        else inputs_document(calibration.observations.effects.inputs),
+        "inputs": inputs_document(inputs),
         "doubts": list(calibration.doubts),
         "case": calibration.problem.source or None,
     }
@@ -101,11 +101,11 @@ def matched_rows(calibration: Calibration) -> list[dict[str, Any]]:
             "approach_speed_m_s": float(calibration.observations.speeds[number]),
         }
         row["value"] = _finite(calibration.values[number])
-        row["low"], row["high"] = (
-            (None, None)
-            if calibration.intervals is None
-            else (_finite(end) for end in calibration.intervals[number])
-        )
+        row["low"] = None
+        row["high"] = None
+        if calibration.intervals is not None:
+            row["low"] = _finite(calibration.intervals[number, 0])
+            row["high"] = _finite(calibration.intervals[number, 1])
         row["given"] = _finite(calibration.given[number])
         for name, (column, *_) in MATCHABLE.items():
             if name in calibration.observations.wanted:

@@ -92,8 +92,10 @@ def differences_tables(calibration: Calibration) -> list[Table]:
     tables = []
     for name, ways in deviations.items():
         number = len(next(iter(ways.values())))
-        cells = np.reshape(_off(np.concatenate([ways[way] for way in WAYS])), (len(WAYS), number))
-        rows = [[str(impact + 1), *cells[:, impact].tolist()] for impact in range(number)]
+        # written together, so that all columns have the same decimals
+        texts = _off(np.concatenate([ways[way] for way in WAYS]))
+        columns = np.reshape(texts, (len(WAYS), number))
+        rows = [[str(impact), *cells.tolist()] for impact, cells in enumerate(columns.T, start=1)]
         tables.append(table_of(headings, first_rows(rows), title=COMPARED[name]))
     return tables
 
@@ -116,13 +118,15 @@ def function_words(calibration: Calibration) -> str:
     else:
         half = np.zeros(function.degree + 1)
     for power, (value, spread) in enumerate(zip(function.coefficients, half, strict=True)):
-        term = known_text(abs(value), float(spread)) + (
-            _POWERS[power] if power < len(_POWERS) else f" v^{power}"
-        )
-        if value < 0.0:
-            phrase += f" \u2212 {term}" if phrase else f"\u2212{term}"
+        speed_power = f" v^{power}"
+        if power < len(_POWERS):
+            speed_power = _POWERS[power]
+        term = f"{known_text(abs(value), float(spread))}{speed_power}"
+        if not phrase:  # the first term has a sign only if it is negative
+            phrase = f"\u2212{term}" if value < 0.0 else term
         else:
-            phrase += f" + {term}" if phrase else term
+            sign = "\u2212" if value < 0.0 else "+"
+            phrase += f" {sign} {term}"
     unit = f" [{calibration.unit}]" if calibration.unit else ""
     if not function.degree:
         return f"{calibration.parameter} = {phrase}{unit}"
@@ -148,10 +152,10 @@ def fit_sentences(calibration: Calibration) -> list[str]:
         else:
             way = "to first order"
         if calibration.intervals is not None:
-            sentences.append(
-                f"Intervals are {way}, from "
-                f"{seen.noise_from if seen.deviations_known else 'the scatter of the measurement'}."
-            )
+            source = "the scatter of the measurement"
+            if seen.deviations_known:
+                source = seen.noise_from
+            sentences.append(f"Intervals are {way}, from {source}.")
         if seen.effects is not None and (
             calibration.intervals is not None or np.isfinite(half).all()
         ):
@@ -162,7 +166,9 @@ def fit_sentences(calibration: Calibration) -> list[str]:
                 "as their standard deviations."
             )
     else:
-        where = "over these speeds" if calibration.curve is not None else "at the impacts"
+        where = "at the impacts"
+        if calibration.curve is not None:
+            where = "over these speeds"
         sentences.append(
             f"Its largest deviation is {digits(largest_misfit(calibration), 3)} {calibration.unit} "
             f"{where}.".replace("  ", " ")
@@ -178,9 +184,11 @@ def given_sentences(calibration: Calibration) -> list[str]:
     """Return sentences on the deviation with the value given by the case, and on other
     parameters that would meet the target.
     """
+    if not calibration.as_given:
+        return []
     sentences = []
     missed = False
-    for name in calibration.weights if calibration.as_given else ():
+    for name in calibration.weights:
         wanted = calibration.observations.wanted[name]
         comes = calibration.as_given[name]
         off = comes / wanted - 1.0
@@ -213,7 +221,8 @@ def given_sentences(calibration: Calibration) -> list[str]:
         elif misses:
             verdict = ", and does not meet the target"
         met = abs(calibration.outcomes[name][worst] / wanted[worst] - 1.0) <= _MET
-        best = f"{calibration.parameter} = {meets} {'meets' if met else 'comes nearest to'} it"
+        verb = "meets" if met else "comes nearest to"
+        best = f"{calibration.parameter} = {meets} {verb} the target"
         sentences.append(
             f"{phrase} is {instead} instead of {asked}, a deviation of "
             f"{_off(off[worst])[0]} %{verdict}. {best}."
@@ -238,7 +247,9 @@ def match_words(calibration: Calibration) -> str:
         reached = (
             np.abs(calibration.outcomes[name] / calibration.observations.wanted[name] - 1.0) <= _MET
         )
-        where = "" if reached.all() else ", or comes nearest to it where noise puts it out of reach"
+        where = ""
+        if not reached.all():
+            where = ", or comes nearest to it where noise puts it out of reach"
         return f"the {MATCHABLE[name].phrase} of each impact matches the target{where}"
     every = " and ".join(
         f"the {MATCHABLE[name].phrase} (weight {weight:g})"
@@ -264,7 +275,8 @@ def _off(parts: ArrayLike) -> list[str]:
     % or more.
     """
     percent = 100.0 * np.atleast_1d(np.asarray(parts, dtype=float))
-    return [fixed(float(value), 3 if largest(percent) < 10.0 else 2) for value in percent]
+    decimals = 3 if largest(percent) < 10.0 else 2
+    return [fixed(float(value), decimals) for value in percent]
 
 
 def _percent(confidence: float) -> str:

@@ -224,7 +224,9 @@ def match_measurement(
     fit = fit_observations(tuned, seen, weights, _degree(seen.speeds, degree), exact_values)
     tell(0.5)
     doubts = [*seen.doubts, *_not_met_doubts(tuned, seen.labels, exact_values, values)]
-    scaled = seen if seen.deviations_known else with_noise_scale(seen, fit.scatter, weights)
+    scaled = seen
+    if not seen.deviations_known:
+        scaled = with_noise_scale(seen, fit.scatter, weights)
     deviations, by_input = value_deviations(tuned, scaled, weights, values)
     if seen.effects is not None:
         doubts += _guessed_inputs(seen.effects, seen.labels, deviations, by_input)
@@ -233,7 +235,9 @@ def match_measurement(
     draws = 0
     if np.isfinite(half_widths).all():
         intervals = np.stack([values - half_widths, values + half_widths], axis=1)
-        draws = default_draws(values, deviations) if bootstrap is None else bootstrap
+        draws = default_draws(values, deviations)
+        if bootstrap is not None:
+            draws = bootstrap
     if draws:
         intervals, fit = bootstrap_intervals(
             tuned,
@@ -286,4 +290,6 @@ def _guessed_inputs(
 
 def _degree(speeds: Floats, degree: int | None) -> int:
     """Return the stated degree, or by default 2, less with fewer than three distinct speeds."""
-    return min(2, distinct(speeds) - 1) if degree is None else degree
+    if degree is None:
+        return min(2, distinct(speeds) - 1)
+    return degree

@@ -141,7 +141,7 @@ def fit_values(speeds: Floats, values: Floats, degree: int) -> Fit:
     coefficients, covariance = _least_squares(powers, values)
     freedom = len(values) - degree - 1
     residual = values - powers @ coefficients
-    scatter = float(np.sqrt((residual @ residual) / freedom)) if freedom else np.nan
+    scatter = _scatter(residual, freedom)
     return Fit(_function(coefficients, speeds), scatter**2 * covariance, freedom, scatter)
 
 
@@ -205,6 +205,13 @@ def _initial_values(tunable: Tunable, speeds: Floats, values: Floats, degree: in
     return np.asarray(polynomial_values)
 
 
+def _scatter(residual: Floats, freedom: int) -> float:
+    """Return the standard deviation that residuals tell; NaN without a degree of freedom."""
+    if not freedom:
+        return np.nan
+    return float(np.sqrt((residual @ residual) / freedom))
+
+
 def _gauss_newton(
     tunable: Tunable,
     observations: Observations,
@@ -247,7 +254,10 @@ def _gauss_newton(
             # noise of the approach speed also changes the value of the polynomial
             by_speed = impacts.by_speed[name] + by_value * value_slope
             noise = observations.noise[name] - scaled(by_speed, observations.speed_noise)
-            noises.append(noise / (1.0 if observations.deviations_known else np.sqrt(weight)))
+            if not observations.deviations_known:
+                # then the weights alone say how far a quantity may be off
+                noise = noise / np.sqrt(weight)
+            noises.append(noise)
             # to first order, so that an input that noise is nothing to lets the fit settle
             if iteration == 0:
                 input_effects.append(_input_effects(observations, name, by_speed))
@@ -318,7 +328,7 @@ def _with_inputs(
         solution, inverse = _least_squares(rows, all_targets)
         residual = all_targets - rows @ solution
         previous = scatter
-        scatter = float(np.sqrt((residual @ residual) / freedom)) if freedom else np.nan
+        scatter = _scatter(residual, freedom)
         if noise_known or not input_count or not scatter > 0.0:
             break
         if abs(scatter - previous) <= _SCATTER_CONVERGED * scatter:
@@ -351,7 +361,9 @@ def value_deviations(
     )
     gradient_noise: Noise = no_noise(*observations.speed_noise.shape)
     curvature = np.zeros(len(values))
-    input_count = 0 if observations.effects is None else len(observations.effects.inputs)
+    input_count = 0
+    if observations.effects is not None:
+        input_count = len(observations.effects.inputs)
     input_effects = np.zeros((len(values), input_count))
     for name, weight in weights.items():
         scale = residual_scale(name, observations.speeds, observations.wanted[name])

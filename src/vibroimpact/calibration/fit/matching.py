@@ -201,10 +201,12 @@ def _least_squares_value(
 
     grid = [allowed.clip(factor * start) for factor in GRID]
     costs = np.array([cost(values) for values in grid])
+    # the minimum lies between the neighbours of the best value of each impact
     best = np.nanargmin(np.where(np.isnan(costs), np.inf, costs), axis=0)
+    grid_values = np.stack(grid)
     impacts = np.arange(len(start))
-    lower = np.stack(grid)[np.clip(best - 1, 0, len(grid) - 1), impacts]
-    upper = np.stack(grid)[np.clip(best + 1, 0, len(grid) - 1), impacts]
+    lower = grid_values[np.maximum(best - 1, 0), impacts]
+    upper = grid_values[np.minimum(best + 1, len(grid) - 1), impacts]
 
     def slope(values: Floats) -> Floats:
         """Return the central difference of the cost, up to its positive step."""
@@ -216,6 +218,8 @@ def _least_squares_value(
         )
 
     has_minimum = (slope(lower) < 0.0) & (slope(upper) > 0.0)
+    # a cost that rises from the least value on is least there; one that falls up to the largest of
+    # the grid has no minimizer
     at_lowest_value = np.where(best == 0, grid[0], np.nan)
     if not has_minimum.any():
         return at_lowest_value
@@ -228,7 +232,9 @@ def residual_scale(name: str, speeds: Floats, wanted: Floats) -> Floats:
 
     For a separation speed, which may be zero, it is the approach speed.
     """
-    return speeds if name == "separation_speed" else np.abs(wanted)
+    if name == "separation_speed":
+        return speeds
+    return np.abs(wanted)
 
 
 @dataclass(frozen=True)

@@ -131,10 +131,13 @@ def _position(drop: Problem, seen: Observations, outcomes: Mapping[str, Floats])
     flights = []
     for rebound_height, begin in zip(outcomes["rebound_height"], seen.record.begins, strict=True):
         # the rebound height is that in a vacuum
-        speed = np.sqrt(2.0 * gravity * max(float(rebound_height) - radius, 0.0))
+        rise = max(float(rebound_height) - radius, 0.0)
+        speed = np.sqrt(2.0 * gravity * rise)
         flight = flight_model.flight(np.asarray(speed))
-        inside = (time >= begin) & (time <= begin + flight.duration)
-        depth, _ = flight_model.depth_at(time[inside] - begin - flight.rise_time)
+        end = begin + float(flight.duration)
+        inside = (time >= begin) & (time <= end)
+        since_apex = time[inside] - begin - flight.rise_time
+        depth, _ = flight_model.depth_at(since_apex)
         simulated[inside] = radius + flight.height - depth
-        flights.append((begin, begin + float(flight.duration)))
+        flights.append((begin, end))
     return Overlay("", "position", (time, position), (time, simulated), flights=tuple(flights))

@@ -162,7 +162,8 @@ def modal_damping(problem: Problem, body: Literal["sphere", "plate"]) -> Tunable
         return damped(float(values[0]))
 
     ratios = np.unique(modes.damping_ratios[modes.frequencies > 0.0])
-    given = np.array([ratios[0] if len(ratios) == 1 else np.nan])
+    # one value stands for all modes, and there is none if they differ
+    given = ratios if len(ratios) == 1 else np.array([np.nan])
     start = float(given[0]) if given[0] > 0.0 else _MODAL_START
     return Tunable(
         name=f"{body}.damping",

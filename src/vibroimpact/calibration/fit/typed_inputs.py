@@ -130,7 +130,9 @@ def effects_of(
         The values of the parameter.
     """
     values = np.where(np.isfinite(values), values, tunable.start)
-    computed = tunable.respond(seen.speeds, values, seen.which) if moved else {}
+    computed: dict[str, Floats] = {}
+    if moved:
+        computed = tunable.respond(seen.speeds, values, seen.which)
     inputs = []
     speed_effects = []
     wanted_effects: dict[str, list[Floats]] = {name: [] for name in weights}
@@ -166,7 +168,8 @@ def _number(case: Case, key: str) -> float | None:
     section, field, *_ = key.split(".")
     body = getattr(case, section)
     of_material = field == "material"
-    value: float | None = body.material.density if of_material else getattr(body, field)
+    quantity = getattr(body, field)
+    value: float | None = quantity.density if of_material else quantity
     if value is None or (isinstance(value, Written) and value.stated):
         return value
     if key == "drop.gravity" and value == STANDARD_GRAVITY:

@@ -155,8 +155,10 @@ def with_nearest_bound(
     missing = np.flatnonzero(np.isnan(values))
     if not missing.size:
         return values
-    ends = [tunable.allowed.clip(np.full(missing.size, bound)) for bound in (-np.inf, np.inf)]
-    ends = [end for end in ends if np.isfinite(end).all()]
+    lowest = tunable.allowed.clip(np.full(missing.size, -np.inf))
+    highest = tunable.allowed.clip(np.full(missing.size, np.inf))
+    # a range that is open on one side has no end there
+    ends = [end for end in (lowest, highest) if np.isfinite(end).all()]
     if not ends:
         return values
     costs = []
@@ -207,7 +209,8 @@ def undetermined_doubts(
         )
     if len(undetermined) > _MOST_NAMED:
         more = len(undetermined) - _MOST_NAMED
-        doubts.append(f"the same holds for {more} more impact{'s' if more > 1 else ''}")
+        impacts = "impacts" if more > 1 else "impact"
+        doubts.append(f"the same holds for {more} more {impacts}")
     highest = fit.function.coefficients[-1]
     half = fit.half_widths(confidence)[-1]
     if fit.function.degree and not abs(highest) > half:
@@ -227,7 +230,9 @@ def other_drop_doubts(problem: Problem, tunable: Tunable, seen: Observations) ->
         has = "the value of the polynomial at its own first speed"
     else:
         has = "the values of the polynomial at its own speeds"
-    in_place = " in place of drop.height" if problem.height is not None else ""
+    in_place = ""
+    if problem.height is not None:
+        in_place = " in place of drop.height"
     return [
         f"the first impact that was measured is at {seen.speeds[0]:.4g} m/s, and that of "
         f"the drop at {first_approach_speed(problem):.4g} m/s: the calibrated case "
@@ -274,8 +279,9 @@ def fit_doubts(
         slower = beyond[beyond < function.slowest]
         faster = beyond[beyond > function.fastest]
         ranges = " and ".join(_range_text(speeds) for speeds in (slower, faster) if speeds.size)
+        impacts = "impacts" if beyond.size > 1 else "an impact"
         doubts.append(
-            f"the drop has {'impacts' if beyond.size > 1 else 'an impact'} at {ranges} m/s, "
+            f"the drop has {impacts} at {ranges} m/s, "
             "and the polynomial was fitted over "
             f"{function.slowest:.4g} to {function.fastest:.4g} m/s: there it is an extrapolation"
         )
@@ -295,4 +301,6 @@ def fit_doubts(
 def _range_text(speeds: Floats) -> str:
     lowest = f"{speeds.min():.4g}"
     highest = f"{speeds.max():.4g}"
-    return lowest if lowest == highest else f"{lowest} to {highest}"
+    if lowest == highest:
+        return lowest
+    return f"{lowest} to {highest}"

@@ -21,7 +21,11 @@ from vibroimpact.calibration.friction.parameters import (
     impact_model,
 )
 from vibroimpact.calibration.observed.noise import standard_deviations
-from vibroimpact.calibration.observed.observations import Observations, with_noise_scale
+from vibroimpact.calibration.observed.observations import (
+    Observations,
+    impact_label,
+    with_noise_scale,
+)
 from vibroimpact.calibration.observed.section import FRICTION
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.reader import case_of
@@ -234,20 +238,27 @@ def calibrate_friction(
     best = _best_fit(misfit, parameters)
     report_progress(0.3)
     freedom = float(len(weights) * len(impacts.seen.speeds) - len(names))
-    scatter = float(np.sqrt(best.cost[0] / freedom)) if freedom > 0 else np.nan
+    scatter = np.nan
+    if freedom > 0:
+        scatter = float(np.sqrt(best.cost[0] / freedom))
     # noise that is stated too small counts as unknown
     known = impacts.seen.deviations_known and not (freedom > 0 and misfits(scatter, int(freedom)))
+    # the quantile is the normal one under known noise, and Student's under noise that is estimated
+    known_freedom = np.inf if known else freedom
     intervals = None
     if known or freedom > 0:
-        quantile = half_width(confidence, np.inf if known else freedom)
-        rise = quantile * (1.0 if known else scatter)
+        quantile = half_width(confidence, known_freedom)
+        noise_scale = 1.0 if known else scatter
+        rise = quantile * noise_scale
         intervals = profile_intervals(misfit.of_measurement, best, parameters.bounds, rise)
         open_ends = _open_ends(intervals, parameters.bounds)
         report_progress(0.5)
         if bootstrap:
             noisy = impacts.seen
             if not known:
-                relative_weights = {} if impacts.seen.deviations_known else weights
+                relative_weights = weights
+                if impacts.seen.deviations_known:
+                    relative_weights = {}
                 noisy = with_noise_scale(impacts.seen, scatter, relative_weights)
             ends = bootstrap_intervals(
                 misfit.of_samples(_samples(noisy, bootstrap, seed)),
@@ -289,7 +300,7 @@ def calibrate_friction(
         outcomes=outcomes,
         given=parameters.given,
         as_given=_outcomes(model, parameters.given),
-        freedom=np.inf if known else freedom,
+        freedom=known_freedom,
         scatter=scatter,
         confidence=confidence,
         bootstrap=bootstrap,
@@ -326,11 +337,13 @@ class _Misfit:
     ) -> None:
         self.model = model
         self.observations = observations
-        self.deviations = {
-            name: standard_deviations(observations.noise[name])
-            / (1.0 if observations.deviations_known else np.sqrt(weight))
-            for name, weight in weights.items()
-        }
+        self.deviations: dict[str, Floats] = {}
+        for name, weight in weights.items():
+            deviation = standard_deviations(observations.noise[name])
+            if not observations.deviations_known:
+                # then the weights alone say how far a quantity may be off
+                deviation = deviation / np.sqrt(weight)
+            self.deviations[name] = deviation
 
     def residuals(self, values: Floats, wanted: Mapping[str, Floats]) -> Floats:
         """Return the residuals from wanted quantities, (n,) or (S, n)."""
@@ -363,7 +376,9 @@ def _best_fit(misfit: _Misfit, parameters: FrictionParameters) -> Minimum:
     Values that make no difference are as given.
     """
     grid = parameters.starts()
-    costs = (misfit.residuals(grid, misfit.observations.wanted) ** 2).sum(axis=1)
+    residuals = misfit.residuals(grid, misfit.observations.wanted)
+    costs = (residuals**2).sum(axis=1)
+    # from several points, as the sum of squares may have several minima
     order = np.argsort(np.where(np.isnan(costs), np.inf, costs), kind="stable")
     minima = minimize(misfit.of_measurement, grid[order[:_STARTS]], parameters.bounds)
     lowest = int(np.argmin(minima.cost))
@@ -399,7 +414,7 @@ def _with_undetermined_as_given(
 def _not_computed(observations: Observations, failed: Bools) -> str:
     """Return which impacts could not be computed; `failed`: whether each could not, (n,)."""
     first = int(np.argmax(failed))
-    label = observations.labels[first] if observations.labels else f"impact {first + 1}"
+    label = impact_label(observations, first)
     if len(failed) == 1:
         sentence = f"{label} could not be computed"
     else:

@@ -121,7 +121,8 @@ def _slip_chart(calibration: FrictionCalibration, curves: list[Curve]) -> Chart 
     source = calibration.problem.source
     model = calibration.model
     impacts = calibration.impacts
-    ratio = moduli_ratio(law, None if source is None else case_of(source))
+    case = None if source is None else case_of(source)
+    ratio = moduli_ratio(law, case)
     scale = float(law.coefficient) * ratio
     radius = float(calibration.problem.sphere.contact_offset)
     if not scale > 0.0:
@@ -199,14 +200,18 @@ def _curves(calibration: FrictionCalibration) -> list[Curve]:
     ):
         return []
     margin = 0.02 * float(np.ptp(impacts.angle))
-    angle = np.linspace(
-        max(impacts.angle.min() - margin, 1e-3), min(impacts.angle.max() + margin, 89.0), _SMOOTH
-    )
+    least = max(impacts.angle.min() - margin, 1e-3)
+    largest = min(impacts.angle.max() + margin, 89.0)
+    angle = np.linspace(least, largest, _SMOOTH)
     speed = float(speeds[steady].mean())
     turned = np.radians(angle)
-    normal = speed * np.cos(turned) if steady == "total" else np.full(_SMOOTH, speed)
+    normal = np.full(_SMOOTH, speed)
+    if steady == "total":
+        normal = speed * np.cos(turned)
+    # the law of an impact of about this angle, as it may differ between impacts
     order = np.argsort(impacts.angle)
-    nearest = order[np.clip(np.searchsorted(impacts.angle[order], angle), 0, len(order) - 1)]
+    following = np.searchsorted(impacts.angle[order], angle)
+    nearest = order[np.minimum(following, len(order) - 1)]
     model = replace(
         calibration.model,
         law=calibration.model.law.take(nearest),
@@ -217,9 +222,8 @@ def _curves(calibration: FrictionCalibration) -> list[Curve]:
     curves = [(calibration.values, "computed", "fit")]
     if calibration.as_given and not np.allclose(calibration.given, calibration.values, rtol=1e-3):
         curves.insert(0, (calibration.given, "as the case gives it", "muted"))
-    return [
-        Curve(
-            angle, model, {name: row[0] for name, row in model(values[None]).items()}, phrase, role
-        )
-        for values, phrase, role in curves
-    ]
+    drawn = []
+    for values, phrase, role in curves:
+        outcomes = {name: row[0] for name, row in model(values[None]).items()}
+        drawn.append(Curve(angle, model, outcomes, phrase, role))
+    return drawn

@@ -12,7 +12,7 @@ import numpy as np
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.calibration.friction.measured import ObliqueImpacts
 from vibroimpact.calibration.friction.parameters import FrictionParameters
-from vibroimpact.calibration.observed.observations import Observations
+from vibroimpact.calibration.observed.observations import Observations, impact_label
 from vibroimpact.calibration.observed.section import FRICTION
 from vibroimpact.units.display import digits, text
 
@@ -58,7 +58,7 @@ def rebound_doubts(impacts: ObliqueImpacts, separation_speed: Floats, law: str) 
     if not missed.any():
         return
     worst = int(np.argmax(np.where(missed, deviation / impacts.seen.speeds, -1.0)))
-    label = impacts.seen.labels[worst] if impacts.seen.labels else f"impact {worst + 1}"
+    label = impact_label(impacts.seen, worst)
     yield (
         f"{law} does not reach the normal rebound of {int(missed.sum())} of {len(deviation)} "
         f"impacts, least that of {label}: its "
@@ -129,9 +129,15 @@ def _parameter_doubt(
     low, high = (text(float(end), unit) for end in interval)
     full_name = f"{FRICTION}{name}"
     is_coefficient = name == "coefficient"
-    all_silent = not slips.any() if is_coefficient else bool(slips.all())
-    hint = _DETERMINING_IMPACTS.get(name, "") if all_silent else ""
-    scale = 0.5 * np.ptp(allowed) if np.isfinite(allowed).all() else abs(value)
+    # impacts that stick tell nothing of the coefficient, and those that slip of nothing else
+    silent = ~slips if is_coefficient else slips
+    all_silent = bool(silent.all())
+    hint = ""
+    if all_silent:
+        hint = _DETERMINING_IMPACTS.get(name, "")
+    scale = abs(value)
+    if np.isfinite(allowed).all():
+        scale = 0.5 * np.ptp(allowed)
     wide = interval[1] - interval[0] > _WIDE * scale
     if open_below and open_above:
         return (
@@ -139,15 +145,18 @@ def _parameter_doubt(
             f"{text(value, unit)}: {at_confidence} they exclude none{hint}"
         )
     if open_above:
-        stick = " (they stick with more friction)" if is_coefficient and all_silent else ""
+        stick = ""
+        if is_coefficient and all_silent:
+            stick = " (they stick with more friction)"
         return (
             f"these impacts give only a lower bound of {full_name}, {low} {at_confidence}"
             f"{stick}{hint}"
         )
     if open_below and wide:
+        if is_coefficient:
+            hint = ""
         return (
-            f"these impacts give only an upper bound of {full_name}, {high} "
-            f"{at_confidence}{'' if is_coefficient else hint}"
+            f"these impacts give only an upper bound of {full_name}, {high} {at_confidence}{hint}"
         )
     if wide:
         return (

@@ -32,10 +32,8 @@ def friction_words(calibration: FrictionCalibration) -> str:
 def together_words(calibration: FrictionCalibration) -> str:
     """Return in words what was matched."""
     every = " and the ".join(ALONG_PLATE[name].phrase for name in calibration.weights)
-    return (
-        f"the {every} of all impacts {'is' if len(calibration.weights) == 1 else 'are'} fitted "
-        "jointly to the measurement"
-    )
+    verb = "is" if len(calibration.weights) == 1 else "are"
+    return f"the {every} of all impacts {verb} fitted jointly to the measurement"
 
 
 def friction_sentences(calibration: FrictionCalibration) -> list[str]:
@@ -59,8 +57,9 @@ def friction_sentences(calibration: FrictionCalibration) -> list[str]:
             way = "by the profile of the sum of squares"
         source = "the scatter of the measurement"
         if calibration.impacts.seen.deviations_known:
-            more = " and the scatter beyond them" if math.isfinite(calibration.freedom) else ""
-            source = f"the given standard deviations{more}"
+            source = "the given standard deviations"
+            if math.isfinite(calibration.freedom):
+                source += " and the scatter beyond them"
         sentences.append(f"At {percent}: {', '.join(each)}. Intervals are {way}, from {source}.")
     for name, (_, unit, phrase) in ALONG_PLATE.items():
         if name in calibration.weights:
@@ -85,9 +84,13 @@ def friction_sentences(calibration: FrictionCalibration) -> list[str]:
     if slip:
         depends = "these depend" if slip > 1 else "it depends"
         alone = f"; of friction, {depends} on the coefficient alone"
-    which = f"Of {number} impacts {slip or 'none'} slip{'s' if slip == 1 else ''}"
-    if number == 1:
-        which = "The impact slips" if slip else "The impact does not slip"
+    if number > 1:
+        verb = "slips" if slip == 1 else "slip"
+        which = f"Of {number} impacts {slip or 'none'} {verb}"
+    elif slip:
+        which = "The impact slips"
+    else:
+        which = "The impact does not slip"
     sentences.append(f"{which} throughout{alone}.")
     if calibration.impacts.separation_speed is not None:
         sentences.append(
@@ -105,15 +108,11 @@ def given_values_sentences(calibration: FrictionCalibration) -> list[str]:
         value = float(calibration.given[place])
         if not math.isfinite(value) or math.isclose(value, calibration.values[place], rel_tol=1e-3):
             continue
-        inside = (
-            calibration.intervals is not None
-            and calibration.intervals[place, 0] <= value <= calibration.intervals[place, 1]
-        )
-        verdict = "inside the interval" if inside else "outside the interval"
-        sentences.append(
-            f"The case gives {name} = "
-            f"{text(value, unit)}{f', {verdict}' if calibration.intervals is not None else ''}."
-        )
+        verdict = ""
+        if calibration.intervals is not None:
+            low, high = calibration.intervals[place]
+            verdict = ", inside the interval" if low <= value <= high else ", outside the interval"
+        sentences.append(f"The case gives {name} = {text(value, unit)}{verdict}.")
     return sentences
 
 
@@ -235,7 +234,9 @@ def _interval_words(interval: Floats, ends: Floats, unit: str) -> str:
     if np.array_equal(interval, ends):
         return "of any value"
     low, high = (text(float(end), unit) for end in interval)
-    return f"{low} to {high}" if np.isfinite(interval[1]) else f"at least {low}"
+    if not np.isfinite(interval[1]):
+        return f"at least {low}"
+    return f"{low} to {high}"
 
 
 def _finite(value: float) -> float | None:

@@ -81,6 +81,7 @@ def profile_intervals(residuals: Residuals, best: Minimum, bounds: Bounds, rise:
     best_values = best.values[0, parameter]
     half_widths = _half_widths(residuals, best, bounds, rise)[parameter]
     furthest = np.where(sides > 0.0, bounds.most[parameter], bounds.least[parameter])
+    # outwards from the best value, until the sum of squares has risen too far
     trials = best_values + sides * _DISTANCES[:, None] * half_widths
     trials = np.where(sides > 0.0, np.minimum(trials, furthest), np.maximum(trials, furthest))
     beyond = np.zeros(trials.shape, dtype=bool)
@@ -92,6 +93,7 @@ def profile_intervals(residuals: Residuals, best: Minimum, bounds: Bounds, rise:
     first_beyond = beyond.argmax(axis=0)
     inner = np.where(first_beyond > 0, trials[first_beyond - 1, all_ends], best_values)
     outer = trials[first_beyond, all_ends]
+    # an end that no trial is beyond lies at the bound
     interval_ends = furthest.copy()
     if closed.size:
         interval_ends[closed] = find_root(

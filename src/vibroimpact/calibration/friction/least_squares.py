@@ -82,7 +82,9 @@ def minimize(
     [[1.414214], [3.0]]
     """
     values = np.clip(start, bounds.least, bounds.most)
-    held = np.zeros(values.shape, dtype=bool) if fixed is None else fixed
+    held = fixed
+    if held is None:
+        held = np.zeros(values.shape, dtype=bool)
     residual = residuals(values, np.arange(len(values)))
     cost = _cost(residual)
     damping = np.full(len(values), _FIRST_DAMPING)
@@ -94,10 +96,9 @@ def minimize(
         slopes = jacobian(residuals, current, residual[moving], moving, bounds, held[moving])
         gradient = np.einsum("snk,sn->sk", slopes, residual[moving])
         # values at a bound stay there if the sum of squares falls beyond it
-        outward = ((current <= bounds.least) & (gradient > 0.0)) | (
-            (current >= bounds.most) & (gradient < 0.0)
-        )
-        free = ~(held[moving] | outward)
+        below = (current <= bounds.least) & (gradient > 0.0)
+        above = (current >= bounds.most) & (gradient < 0.0)
+        free = ~(held[moving] | below | above)
         step = _damped_step(slopes, gradient, free, damping[moving])
         trial = np.clip(current - step, bounds.least, bounds.most)
         trial_residual = residuals(trial, moving)
@@ -109,10 +110,12 @@ def minimize(
         values[accepted] = trial[better]
         residual[accepted] = trial_residual[better]
         cost[accepted] = trial_cost[better]
-        damping[moving] = np.clip(
-            damping[moving] * np.where(better, 0.1, 10.0), _LEAST_DAMPING, None
-        )
-        settled = idle | (np.abs(trial - current) <= _CLOSE * bounds.size(current)).all(axis=1)
+        # towards Gauss-Newton after a step that helped, towards steepest descent after one that
+        # did not
+        change = np.where(better, 0.1, 10.0)
+        damping[moving] = np.maximum(damping[moving] * change, _LEAST_DAMPING)
+        close = np.abs(trial - current) <= _CLOSE * bounds.size(current)
+        settled = idle | close.all(axis=1)
         moving = moving[~settled & (damping[moving] < _MOST_DAMPING)]
     return Minimum(values, cost)
 
@@ -148,15 +151,18 @@ def jacobian(
     """
     chain_count, value_count = values.shape
     step = _STEP * bounds.size(values)
+    # backwards where a step forwards would leave the bounds
     step = np.where(values + step > bounds.most, -step, step)
-    free = np.ones(values.shape, dtype=bool) if held is None else ~held
-    moved_chain, moved_value = np.nonzero(free)
-    moved = values[moved_chain]
-    moved_step = step[moved_chain, moved_value]
+    if held is None:
+        held = np.zeros(values.shape, dtype=bool)
+    # all steps are computed at once: a chain for each value that moves, with that one moved
+    chain, moved_value = np.nonzero(~held)
+    moved_step = step[chain, moved_value]
+    moved = values[chain]
     moved[np.arange(len(moved)), moved_value] += moved_step
-    change = residuals(moved, chains[moved_chain]) - residual[moved_chain]
+    change = residuals(moved, chains[chain]) - residual[chain]
     slopes = np.zeros((chain_count, value_count, residual.shape[1]))
-    slopes[moved_chain, moved_value] = change / moved_step[:, None]
+    slopes[chain, moved_value] = change / moved_step[:, None]
     return np.moveaxis(slopes, 1, 2)
 
 

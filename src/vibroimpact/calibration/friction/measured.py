@@ -129,7 +129,9 @@ def oblique_impacts_in_file(
             "tangential restitution",
             "target",
         )
-    names = tuple(default_weights(measured) if match is None else match)
+    if match is None:
+        match = default_weights(measured)
+    names = tuple(match)
     _check_names(names, measured)
     wanted = {name: measured[name] for name in names}
     for name in names:

@@ -85,7 +85,8 @@ class FrictionParameters:
                 axes.append(np.linspace(float(lower), float(upper), 5)[1:-1])
             else:
                 axes.append(self._size(name) * 2.0 ** np.arange(-4.0, 4.0))
-        return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(self.names))
+        grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+        return grid.reshape(-1, len(self.names))
 
     def with_values(self, values: Floats) -> FrictionLaw:
         """Return the law with values of the parameters, (K,) or (n, K)."""
@@ -127,9 +128,13 @@ def friction_parameters(problem: Problem, names: Sequence[str]) -> FrictionParam
     ... ).given
     array([0.2])
     """
-    law = None if problem.oblique is None else problem.oblique.friction
+    law = None
+    if problem.oblique is not None:
+        law = problem.oblique.friction
     if law is None:
-        example = "coulomb" if isinstance(problem.laws[0], InstantaneousLaw) else "mdr"
+        example = "mdr"
+        if isinstance(problem.laws[0], InstantaneousLaw):
+            example = "coulomb"
         raise InputError(
             f"the case has no friction; give contact.friction a law, such as {{ law = "
             f'"{example}" }}',

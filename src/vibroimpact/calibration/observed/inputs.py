@@ -52,8 +52,10 @@ def as_input(name: str, value: float | str, unit: str) -> Input:
     ... )
     (0.005, 0.0)
     """
-    if not isinstance(value, Written):
-        value = read_written(value, unit) if isinstance(value, str) else Written(value)
+    if isinstance(value, str):
+        value = read_written(value, unit)
+    elif not isinstance(value, Written):
+        value = Written(value)
     if value.stated:
         return Input(name, value, unit)
     # half a unit of the last digit, of whose uniform distribution the deviation is
@@ -120,7 +122,9 @@ def inputs_document(inputs: Sequence[Input]) -> list[dict[str, Any]]:
 
 def _with_deviation(typed: Input) -> str:
     deviation = typed.value.deviation
-    deviation_text = _short(deviation, typed.unit) if deviation else "exact"
+    deviation_text = "exact"
+    if deviation:
+        deviation_text = _short(deviation, typed.unit)
     reason = f" ({typed.why})" if typed.why else ""
     return f"{typed.name} {_value_text(typed)}, {deviation_text}{reason}"
 

@@ -147,6 +147,7 @@ class Observations:
 
     def redrawn(self, random: np.random.Generator) -> tuple[Floats, dict[str, Floats]]:
         """Return approach speeds and target values with random noise and random inputs."""
+        # one draw for all, as a reading may be a source of several speeds and targets
         draw = random.normal(size=self.speed_noise.shape[1])
         speeds = self.speeds + self.speed_noise @ draw
         wanted = {name: values + self.noise[name] @ draw for name, values in self.wanted.items()}
@@ -171,6 +172,13 @@ class Observations:
         if self.effects is None:
             return by_noise
         return np.asarray(np.hypot(by_noise, np.linalg.norm(self.effects.speeds, axis=1)))
+
+
+def impact_label(observations: Observations, impact: int) -> str:
+    """Return the name of an impact in messages, or its number from 1 if it has none."""
+    if observations.labels:
+        return observations.labels[impact]
+    return f"impact {impact + 1}"
 
 
 def from_heights(
@@ -213,8 +221,10 @@ def from_heights(
     flight_model = flights or VacuumFlights(gravity)
     fall_speeds, fall_slopes = flight_model.speed_after_fall(heights - radius)
     rises, rise_slopes = vacuum_height(flight_model, heights - radius)
-    # without deviations, of unknown magnitude: the same for all heights
-    height_deviation = np.ones(len(heights)) if deviation is None else deviation
+    height_deviation = deviation
+    if height_deviation is None:
+        # of unknown magnitude: the same for all heights
+        height_deviation = np.ones(len(heights))
     readings = own_noise({"rebound_height": height_deviation})["rebound_height"]
     return Observations(
         speeds=np.append(first_speed, fall_speeds[:-1]),
@@ -265,11 +275,11 @@ def from_table(
     of_the_drop : bool, default False
         Whether they are the successive impacts of the drop.
     """
-    # of unknown magnitude: the same relative noise for all
-    sizes = {
-        name: np.abs(values) if deviations is None else deviations[name]
-        for name, values in wanted.items()
-    }
+    if deviations is None:
+        # of unknown magnitude: the same relative noise for all
+        sizes = {name: np.abs(values) for name, values in wanted.items()}
+    else:
+        sizes = {name: deviations[name] for name in wanted}
     return Observations(
         speeds=speeds,
         wanted=wanted,

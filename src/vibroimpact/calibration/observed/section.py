@@ -60,14 +60,18 @@ class RestitutionTarget(Section):
                 "restitution",
             )
         if isinstance(several, tuple) and (speeds is None or len(speeds) != len(several)):
-            have = "no approach_speed is given" if speeds is None else f"there are {len(speeds)}"
+            have = "no approach_speed is given"
+            if speeds is not None:
+                have = f"there are {len(speeds)}"
             if len(several) > 1:
                 need = f"{len(several)} restitutions need"
             else:
                 need = "a list of one restitution needs"
             raise InputError(f"{need} as many approach speeds, and {have}", "approach_speed")
         if not isinstance(several, tuple) and (speeds or self.standard_deviation):
-            key = "approach_speed" if speeds else "standard_deviation"
+            key = "standard_deviation"
+            if speeds:
+                key = "approach_speed"
             raise InputError(
                 "one restitution holds at any approach speed, and exactly; leave this out", key
             )
@@ -185,7 +189,9 @@ def _read_target(value: Any) -> Any:
 
 
 def _read_model(value: Any) -> Any:
-    return read_contact({"law": value} if isinstance(value, str) else value)
+    if isinstance(value, str):
+        value = {"law": value}
+    return read_contact(value)
 
 
 def _read_match(value: Any) -> Any:
@@ -238,9 +244,9 @@ class SpeedsTable(Section):
 
     def values(self) -> np.ndarray:
         """Return the approach speeds [m/s]."""
-        return (np.linspace if self.scale == "linear" else np.geomspace)(
-            self.start, self.end, self.number
-        )
+        if self.scale == "linear":
+            return np.linspace(self.start, self.end, self.number)
+        return np.geomspace(self.start, self.end, self.number)
 
 
 _LAW = "a contact law and its parameters"
@@ -344,7 +350,9 @@ def friction_names(parameter: Any) -> tuple[str, ...]:
     """
     if isinstance(parameter, (list, tuple)):
         return tuple(str(name) for name in parameter)
-    return (parameter,) if isinstance(parameter, str) and parameter.startswith(FRICTION) else ()
+    if isinstance(parameter, str) and parameter.startswith(FRICTION):
+        return (parameter,)
+    return ()
 
 
 def calibrate_table(section: CalibrateSection) -> dict[str, Any]:

@@ -63,13 +63,15 @@ def impacts_in_bounces(
         f"impact {number}, {time:.6g} s" for number, time in enumerate(bounces.time[:-1], 1)
     )
     restitution = flight_speeds.start / speeds
-    # whether the first impact that is heard is the first one of the drop
+    # else the first impact that is heard is not the first one of the drop
     first_is_heard = bool(abs(np.log(restitution[0] / restitution[1])) <= np.log(_UNLIKE))
-    kept = slice(0 if first_is_heard else 1, None)
+    first = 0 if first_is_heard else 1
+    kept = slice(first, None)
     note = f"{flight_count + 1} touches are detected"
     sounds = len(bounces.others)
     if sounds:
-        note += f"; {sounds} other sound{'s are' if sounds > 1 else ' is'} no bounce"
+        are = "sounds are" if sounds > 1 else "sound is"
+        note += f"; {sounds} other {are} no bounce"
     if not first_is_heard:
         note += (
             f"; the first is not taken for that of the drop, at {first_speed:.4g} m/s, as its "

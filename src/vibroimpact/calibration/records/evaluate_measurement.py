@@ -106,8 +106,9 @@ def _flights(case: Case, measurement: Measurement, fluid: Fluid) -> FluidFlights
 
 
 def _note(fluid: Fluid) -> str:
-    constant = fluid.drag_coefficient if isinstance(fluid, Air) else None
-    source = "Clift and Gauvin" if constant is None else f"drag coefficient {constant:g}"
+    source = "Clift and Gauvin"
+    if isinstance(fluid, Air) and fluid.drag_coefficient is not None:
+        source = f"drag coefficient {fluid.drag_coefficient:g}"
     if isinstance(fluid, Liquid):
         return (
             "Flights have the buoyancy, drag and added mass of the liquid "

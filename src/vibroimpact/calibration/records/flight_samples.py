@@ -61,7 +61,10 @@ def release(time: Floats, position: Floats, first_impact: int, noise: float) -> 
     lowest = float(position[first_impact])
     fall_height = float(np.ptp(position[: first_impact + 1]))
     at_top = np.flatnonzero(falling > lowest + _LEFT_TOP * fall_height)
-    released = int(at_top[-1]) + 1 if at_top.size else 0
+    released = 0
+    if at_top.size:
+        released = int(at_top[-1]) + 1
+    # a sphere that is held first leaves the parabola of a fall, and follows it once it is released
     scatter_from_start = _scatter_about_parabola(time[:first_impact], falling)
     scatter_from_release = _scatter_about_parabola(time[released:first_impact], falling[released:])
     held = (

@@ -144,7 +144,9 @@ class FluidFlights:
 
         They end where flights are not possible, or at the largest rise asked for.
         """
-        key = "drop.air and calibrate.air" if isinstance(self.fluid, Air) else "contact.liquid"
+        key = "contact.liquid"
+        if isinstance(self.fluid, Air):
+            key = "drop.air and calibrate.air"
         ends = "is not possible"
         if tables is not None and tables.up.x[-1] ** 2 > _WHOLE * self.highest:
             ends = f"is higher than {self.highest:.3g} m, far above what was measured,"
@@ -226,6 +228,7 @@ class FluidFlights:
             first_step=first,
         )
         root = np.linspace(0.0, solution.t[-1], _POINTS)
+        # at the apex both are 0; the integration begins a little below it
         speed, time = np.hstack([np.zeros((2, 1)), solution.sol(root[1:])])
         return root, speed, time
 

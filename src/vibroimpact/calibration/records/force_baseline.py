@@ -57,7 +57,8 @@ def record_baseline(time: Floats, force: Floats, quiet: Bools) -> Floats:
     True
     """
     quiet_samples = np.flatnonzero(quiet)
-    block_count = max(1, min(_MOST_BLOCKS, len(quiet_samples) // _FEWEST_IN_BLOCK))
+    block_count = min(_MOST_BLOCKS, len(quiet_samples) // _FEWEST_IN_BLOCK)
+    block_count = max(1, block_count)
     blocks = np.array_split(quiet_samples, block_count)
     block_times = np.array([np.median(time[block]) for block in blocks])
     levels = np.array([np.median(force[block]) for block in blocks])
@@ -69,7 +70,8 @@ def record_baseline(time: Floats, force: Floats, quiet: Bools) -> Floats:
         (time < block_times[0], 0, 1),
         (time > block_times[-1], -1, -2),
     ):
-        slope = (levels[neighbour] - levels[end]) / (block_times[neighbour] - block_times[end])
+        rise = levels[neighbour] - levels[end]
+        slope = rise / (block_times[neighbour] - block_times[end])
         baseline[outside] = levels[end] + slope * (time[outside] - block_times[end])
     return baseline
 
@@ -176,6 +178,7 @@ def _fitted_baseline(
         if _exceeds_noise(scatter / noise, freedom):
             excess_scatter = scatter
     impulse_by_noise = noise * np.sqrt(weights @ inverse @ weights)
+    # what the curve does not follow may be an offset throughout the pulse
     impulse_by_drift = excess_scatter * (pulse_time[-1] - pulse_time[0])
     return Baseline(
         values=powers(pulse_time) @ coefficients,

@@ -200,10 +200,9 @@ def _pulse(
     impulse_noise = detected.noise * step * np.sqrt(integrated.stop - integrated.start)
     # sampling error: the change of the impulse at half the sampling rate, beyond that expected from
     # noise
-    half_rate_impulses = np.array(
-        [np.trapezoid(force[first::2], pulse_time[first::2]) for first in (0, 1)]
-    )
-    change = float(np.abs(impulse - half_rate_impulses).max())
+    of_even_samples = float(np.trapezoid(force[::2], pulse_time[::2]))
+    of_odd_samples = float(np.trapezoid(force[1::2], pulse_time[1::2]))
+    change = max(abs(impulse - of_even_samples), abs(impulse - of_odd_samples))
     between = 0.5 * max(0.0, change - 2.0 * impulse_noise)
     contact = slice(begin - integrated.start, end - integrated.start)
     force_deviation = np.hypot(detected.noise, baseline.deviation)
@@ -249,19 +248,27 @@ def _duration_at_half(time: Floats, force: Floats, largest: float, top: int) -> 
     half = 0.5 * largest
     low_before = np.flatnonzero(force[: top + 1] < half)
     low_after = np.flatnonzero(force[top:] < half)
-    before = int(low_before[-1]) if low_before.size else 0
-    after = top + int(low_after[0]) if low_after.size else len(force) - 1
+    # a pulse that is cut off has no low sample on that side
+    before = 0
+    if low_before.size:
+        before = low_before[-1]
+    after = len(force) - 1
+    if low_after.size:
+        after = top + low_after[0]
 
-    def crossing(first: int, second: int) -> float:
-        """Return when the line between two samples crosses half of the largest force."""
-        if force[second] == force[first]:
-            fraction = 0.5
-        else:
-            fraction = np.clip((half - force[first]) / (force[second] - force[first]), 0.0, 1.0)
-        return float(time[first] + fraction * (time[second] - time[first]))
+    def crossing(first: int) -> float:
+        """Return when the line from a sample to the next crosses half of the largest force."""
+        rise = force[first + 1] - force[first]
+        step = time[first + 1] - time[first]
+        fraction = 0.5
+        if rise != 0.0:
+            fraction = np.clip((half - force[first]) / rise, 0.0, 1.0)
+        return float(time[first] + fraction * step)
 
-    width = crossing(after - 1, after) - crossing(before, before + 1)
-    return width / float(1.0 - 2.0 * hertz_rise(np.array(0.5))[0])
+    width = crossing(after - 1) - crossing(before)
+    # Hertz's force takes this fraction of the duration up to half of its largest value
+    rise_to_half = hertz_rise(np.array(0.5))[0]
+    return width / float(1.0 - 2.0 * rise_to_half)
 
 
 def _begin_of_rise(
@@ -274,28 +281,38 @@ def _begin_of_rise(
     none lasts as long as of a pulse of the given duration.
     """
     below = np.flatnonzero(force < max(_ABOVE_NOISE * noise, _FOOT * largest))
-    first = int(below[-1]) + 1 if below.size else 0
-    flank = np.arange(first, len(force))[force[first:] < _SHOULDER * largest]
-    if len(flank) < 2:
-        rise, rise_slope = hertz_rise(np.clip(force[first] / largest, 0.0, _SHOULDER))
-        by_noise = duration * float(rise_slope) * noise / largest
-        # without a sample on the flank the begin lies anywhere between two samples
+    first = below[-1] + 1 if below.size else 0
+    flank = first + np.flatnonzero(force[first:] < _SHOULDER * largest)
+    if len(flank) >= 2:
+        return _begin_of_line(time[flank], force[flank] / largest, noise / largest)
+    rise, rise_slope = hertz_rise(np.clip(force[first] / largest, 0.0, _SHOULDER))
+    begin = float(time[first]) - duration * float(rise)
+    by_noise = duration * float(rise_slope) * noise / largest
+    by_sampling = 0.0
+    if not len(flank):
+        # the begin lies anywhere between two samples: the deviation of a uniform distribution
         step = float(np.median(np.diff(time)))
-        by_sampling = 0.0 if len(flank) else step / np.sqrt(12.0)
-        begin = float(time[first]) - duration * float(rise)
-        return begin, float(np.hypot(by_noise, by_sampling))
-    # Line by weighted least squares of the fraction of the duration over time. The weights are the
-    # inverse deviations of the fractions by noise of the force.
-    fraction, slope = hertz_rise(force[flank] / largest)
+        by_sampling = step / np.sqrt(12.0)
+    return begin, float(np.hypot(by_noise, by_sampling))
+
+
+def _begin_of_line(time: Floats, relative_force: Floats, noise: float) -> tuple[float, float]:
+    """Return when the rise of Hertz's force through samples has begun, and the deviation [s].
+
+    Forces and noise are relative to the largest force. The fraction of the duration over time is a
+    line, by least squares with the inverse deviations of the fractions as weights.
+    """
+    fraction, slope = hertz_rise(relative_force)
     weights = 1.0 / slope
-    middle = float(time[flank].mean())
-    design = np.stack([np.ones(len(flank)), time[flank] - middle], axis=1)
-    inverse = np.linalg.inv((design * weights[:, None] ** 2).T @ design)
+    middle = float(time.mean())
+    design = np.stack([np.ones(len(time)), time - middle], axis=1)
+    normal = (design * weights[:, None] ** 2).T @ design
+    inverse = np.linalg.inv(normal)
     intercept, rate = inverse @ (design.T @ (weights**2 * fraction))
     # the line is zero at the begin, middle - shift
     shift = intercept / rate
     gradient = np.array([1.0, -shift])
-    deviation = noise / largest / rate * np.sqrt(gradient @ inverse @ gradient)
+    deviation = noise / rate * np.sqrt(gradient @ inverse @ gradient)
     return middle - float(shift), float(deviation)
 
 
@@ -311,15 +328,18 @@ def _largest(force: Floats, contact: slice) -> tuple[float, float]:
     if len(top) > _FEWEST:
         from_middle = top - top.mean()
         a, b, c = np.linalg.lstsq(np.vander(from_middle, 3), contact_force[top], rcond=None)[0]
+        # a parabola that opens upwards has no apex: the samples are flat, or noise
         if a < 0.0:
             return float(c - b * b / (4.0 * a)), 0.0
         return largest_sample, 0.0
     from scipy.interpolate import CubicSpline  # imported late: few records need it
 
     count = len(contact_force)
-    fine = np.linspace(contact.start, contact.stop - 1, _SPLINE_POINTS * count)
-    largest = float(np.max(CubicSpline(np.arange(len(force)), force)(fine)))
-    return largest, _BETWEEN * (largest - largest_sample) + _COARSE * largest / count**2
+    spline = CubicSpline(np.arange(len(force)), force)
+    between_samples = np.linspace(contact.start, contact.stop - 1, _SPLINE_POINTS * count)
+    largest = float(np.max(spline(between_samples)))
+    deviation = _BETWEEN * (largest - largest_sample) + _COARSE * largest / count**2
+    return largest, deviation
 
 
 def _margin(begin: int, end: int, fraction: float) -> int:

@@ -136,8 +136,10 @@ def impacts_in_force(
     step = float(np.median(np.diff(time)))
     detected = find_pulses(time, force)
     runs = list(detected.runs)
-    # cut off by the end of the record; its start still ends a flight
-    cut_off = runs.pop() if len(runs) > 1 and runs[-1][1] == len(force) else None
+    cut_off = None
+    if len(runs) > 1 and runs[-1][1] == len(force):
+        # cut off by the end of the record; its start still ends a flight
+        cut_off = runs.pop()
     _check_runs(runs, len(force), label_of)
     pulses = evaluate_pulses(time, detected, runs)
     impact_times = _impact_times(time, pulses, runs, cut_off, step)
@@ -148,14 +150,7 @@ def impacts_in_force(
         # the impulse of the last one is not known; its start still ends a flight
         del pulses[-1], runs[-1]
     if clipped and not pulses:
-        up_to = ""
-        if gravity > 0.0:
-            up_to = ", or up to the next impact, from whose time the rebound follows"
-        raise InputError(
-            f"the force is clipped at {clipped[0]}: its largest value is held, so that "
-            "neither it nor the impulse is known; "
-            f"record again with a larger range{up_to}"
-        )
+        raise _all_clipped(clipped[0], gravity)
     flight_speeds = _flight_speeds(impact_times.begins, pulses, gravity, flights)
     timed = len(flight_speeds.start)
     speeds = np.append(first_speed, flight_speeds.end)[: len(pulses)]
@@ -167,9 +162,11 @@ def impacts_in_force(
         ends=np.hypot(sampling, [pulse.end_deviation for pulse in pulses]),
         begins=np.hypot(sampling, impact_times.deviations),
     )
+    # a first impact of another drop only begins the first flight
     other_drop = _of_another_drop(pulses, flight_speeds, mass, gravity, first_speed)
+    first_kept = 1 if other_drop else 0
     separation, deviation, doubts = _separations(
-        pulses, flight_speeds, edges, mass, gravity, first_speed, scaled_from=1 if other_drop else 0
+        pulses, flight_speeds, edges, mass, gravity, first_speed, scaled_from=first_kept
     )
     labels = [label_of(begin) for begin, _ in runs]
     _check_speeds(speeds, separation, labels, timed)
@@ -178,13 +175,12 @@ def impacts_in_force(
         doubts = (other_drop, *doubts)
     per_contact = flight_speeds.start_slope * [pulse.duration for pulse in pulses[:timed]]
     speed_noise, noise = _noise(pulses, flight_speeds, deviation, by_law, lost, per_contact)
-    wanted = {
-        "separation_speed": separation,
-        "max_force": np.array([pulse.largest for pulse in pulses]),
-    }
+    wanted = {"separation_speed": separation}
     if clipped:
-        del wanted["max_force"], noise["max_force"]
-    kept = slice(1 if other_drop else 0, None)
+        del noise["max_force"]
+    else:
+        wanted["max_force"] = np.array([pulse.largest for pulse in pulses])
+    kept = slice(first_kept, None)
     numbered = [f"impact {number}, {label}" for number, label in enumerate(labels, 1)]
     return Observations(
         speeds[kept],
@@ -201,18 +197,28 @@ def impacts_in_force(
     )
 
 
+def _all_clipped(label: str, gravity: float) -> InputError:
+    """Return the error that no impact of a record has a known force or time of flight."""
+    remedy = "record again with a larger range"
+    if gravity > 0.0:
+        remedy += ", or up to the next impact, from whose time the rebound follows"
+    return InputError(
+        f"the force is clipped at {label}: its largest value is held, so that "
+        f"neither it nor the impulse is known; {remedy}"
+    )
+
+
 def _check_runs(
     runs: Sequence[tuple[int, int]], sample_count: int, label_of: Callable[[int], str]
 ) -> None:
     """Check that impacts, as index ranges, lie within the record and have enough samples."""
     for begin, end in runs:
         if begin == 0 or end == sample_count:
-            raise InputError(
-                f"the record {'begins' if begin == 0 else 'ends'} in the middle of an "
-                f"impact, at {label_of(begin)}"
-            )
-        if end - begin < _FEWEST:
-            few = f"{end - begin} sample{'s' if end - begin > 1 else ''}"
+            verb = "begins" if begin == 0 else "ends"
+            raise InputError(f"the record {verb} in the middle of an impact, at {label_of(begin)}")
+        count = end - begin
+        if count < _FEWEST:
+            few = f"{count} samples" if count > 1 else "1 sample"
             raise InputError(
                 f"the impact at {label_of(begin)} has only {few}, but {_FEWEST} are needed; "
                 "sample faster"
@@ -274,18 +280,24 @@ def _wrong(impact: int, impact_count: int, *, timed: bool) -> str:
     `timed`: whether the speed after it follows from a time of flight, not from the impulse.
     """
     if timed:
-        inputs = "the times, the drop or gravity" if impact == 0 else "the times"
+        # the speed before the first impact is that of the drop
+        inputs = "the times"
+        if impact == 0:
+            inputs = "the times, the drop or gravity"
         return f"{inputs} can't be right, an impact is missing or is none, or the plate moves"
-    inputs = ", the drop or gravity" if impact_count > 1 else " or the drop"
-    return f"the force, the mass{inputs} can't be right"
+    inputs = "the force, the mass or the drop"
+    if impact_count > 1:
+        inputs = "the force, the mass, the drop or gravity"
+    return f"{inputs} can't be right"
 
 
 def _sampling_doubts(pulses: Sequence[Pulse], clipped: Sequence[str]) -> tuple[str, ...]:
     """Return a warning if impacts are clipped, whose labels are `clipped`, or coarsely sampled."""
     if clipped:
+        impacts = "impacts" if len(clipped) > 1 else "impact"
         return (
             f"the force is clipped in {len(clipped)} "
-            f"impact{'s' if len(clipped) > 1 else ''}, first at {clipped[0]}: the largest forces "
+            f"{impacts}, first at {clipped[0]}: the largest forces "
             "and the impulses are not known, and rebounds follow from the times of flight "
             "alone; record again with a larger range",
         )
@@ -436,6 +448,7 @@ def _of_another_drop(
     scale, deviation = _force_scale(
         later, flight_speeds.start[1:], flight_speeds.end[: timed - 1], mass, gravity
     )
+    # J = m (v- + v+ + g T), with v+ by the time of flight
     change = scale * first.impulse / mass
     speed = change - flight_speeds.start[0] - gravity * first.duration
     by_noise = change * np.hypot(deviation / scale, first.impulse_deviation / first.impulse)

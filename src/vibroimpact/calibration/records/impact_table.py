@@ -60,7 +60,9 @@ class ImpactTable(TableFile):
 
 def name_in_file(table: TableFile, column: str) -> str:
     """Return the name that a column has in its file, for messages."""
-    return table.written.get(column, column) if isinstance(table, ImpactTable) else column
+    if isinstance(table, ImpactTable):
+        return table.written.get(column, column)
+    return column
 
 
 def is_impact_table(names: Collection[str]) -> bool:
@@ -124,9 +126,10 @@ def read_impact_table(
     for standard in set(standard_names.values()):
         synonyms = [name for name in names if standard_names.get(name, name) == standard]
         if len(synonyms) > 1:
+            together = "all" if len(synonyms) > 2 else "both"
             raise InputError(
-                f"{path}: the columns {' and '.join(synonyms)} "
-                f"{'all' if len(synonyms) > 2 else 'both'} mean {standard}; keep one of them"
+                f"{path}: the columns {' and '.join(synonyms)} {together} mean {standard}; "
+                "keep one of them"
             )
     units_in_file = {
         **units,

@@ -228,9 +228,11 @@ def _noise_and_timing(
         # Derivatives by the height and the time of the apex. The fit of these two takes from each
         # sample a part of its variance, its leverage: the diagonal of the hat matrix Q Q^T.
         design = np.stack([np.ones_like(time), downward_speed], axis=1)
-        orthonormal = np.linalg.qr(design / flights.deviation(downward_speed)[:, None])[0]
+        deviation = flights.deviation(downward_speed)
+        orthonormal, _ = np.linalg.qr(design / deviation[:, None])
         leverage = (orthonormal**2).sum(axis=1)
-        residual = position - (flights.offset(time) + flights.apex_heights[flight] - depth)
+        computed = flights.offset(time) + flights.apex_heights[flight] - depth
+        residual = position - computed
         residuals_of_flights.append(residual**2 / np.maximum(1.0 - leverage, 0.1))
         speeds_of_flights.append((downward_speed / flights.clock) ** 2)
     squared_residual = np.concatenate(residuals_of_flights)
@@ -303,7 +305,9 @@ def meeting_flights(
     else:
         expected_contact = contact_duration
         contact_deviation = _CONTACT_DEVIATION * contact_duration
-    shared = [_ZERO, _CLOCK] if meeting_count == 1 else [_ZERO, _DRIFT, _CLOCK]
+    shared = [_ZERO, _DRIFT, _CLOCK]
+    if meeting_count == 1:  # which tells no drift of the zero
+        shared.remove(_DRIFT)
     if contact_duration is None or contact_duration > 0.0:
         shared.append(_CONTACT)
     zero = float(np.median(levels)) - radius
@@ -323,8 +327,9 @@ def meeting_flights(
     freedom = meeting_count - min(meeting_count, 2)
     if not freedom or not _exceeds(joint.misfit - separate.misfit, freedom):
         return joint
-    # The scatter with which the meetings add as much misfit as there are degrees of freedom, by
-    # bisection of its logarithm; the misfit falls with the scatter.
+    # The scatter with which the meetings add as much misfit as there are degrees of freedom, which
+    # is what chi-squared is expected to be; by bisection of its logarithm, as the misfit falls with
+    # the scatter.
     low = _MEETING_TOLERANCE * separate.noise
     high = max(radius, separate.noise)
     for _ in range(_MOST_BISECTIONS):
@@ -376,13 +381,10 @@ def _solved(
     for _ in range(_MOST_ITERATIONS):
         equations = _equations(samples, flights, flight_model, shared, noise, meetings)
         # columns of norm 1 keep the triangle well conditioned whatever the units
-        column_norms = np.linalg.norm(equations[:, estimated], axis=0)
-        triangle = np.asarray(
-            np.linalg.qr(
-                np.column_stack([equations[:, estimated] / column_norms, equations[:, -1]]),
-                mode="r",
-            )
-        )
+        columns = equations[:, estimated]
+        column_norms = np.linalg.norm(columns, axis=0)
+        with_residuals = np.column_stack([columns / column_norms, equations[:, -1]])
+        triangle = np.asarray(np.linalg.qr(with_residuals, mode="r"))
         # the last column, of residuals, ends in their norm after the step
         square = triangle[: len(estimated), : len(estimated)]
         right_side = triangle[: len(estimated), -1]

@@ -69,7 +69,9 @@ def _check_heights(seen: Observations, case: Case, heights: Floats, first_speed:
         fall_height = heights[impact - 1]
     else:
         fall_height = case.drop.height or radius + 0.5 * first_speed**2 / gravity
-    higher = "higher than" if height > fall_height else "too high for"
+    higher = "too high for"
+    if height > fall_height:
+        higher = "higher than"
     raise InputError(
         f"{seen.labels[impact]}: {height:g} m is {higher} the {fall_height:g} m from which the "
         "sphere fell, and a restitution of "
@@ -104,7 +106,9 @@ def first_impact_measurement(case: Case, target: ImpactTarget) -> Measurement:
             check_restitutions(seen, case)
         return replace(seen, flights=flights)
 
-    highest = 0.0 if target.rebound_height is None else target.rebound_height - radius
+    highest = 0.0
+    if target.rebound_height is not None:
+        highest = target.rebound_height - radius
     return Measurement(evaluated, highest)
 
 

@@ -503,5 +503,7 @@ def in_file(file: str, error: InputError) -> InputError:
     """Return an error with a message that names the file."""
     if file in error.message:
         return InputError(error.message, "target")
-    between = ", " if error.message.startswith("line ") else ": "
+    between = ": "
+    if error.message.startswith("line "):
+        between = ", "
     return InputError(f"{file}{between}{error.message}", "target")

@@ -315,10 +315,11 @@ def _clock_doubt(clock: float, gravity: float, shows_fall: bool) -> str:
         exception = ""
     else:
         exception = ", but for that of the first impact, whose approach speed is the case's"
+    pace = "fast" if percent_off > 0.0 else "slowly"
     return (
         f"the flights curve as under {gravity / clock**2:.4g} m/s^2, not "
         f"{gravity:.4g} m/s^2: the clock of the record is taken "
-        f"to run {abs(percent_off):.2g} % too {'fast' if percent_off > 0.0 else 'slowly'}, "
+        f"to run {abs(percent_off):.2g} % too {pace}, "
         "which is corrected; if its lengths are wrong instead, all "
         f"speeds taken from it are {speed_percent:+.2g} % off, and "
         f"the restitutions stay right{exception}"
@@ -455,13 +456,15 @@ def _meeting_height(flights: JointFlights, flight: int, flight_model: Flights) -
 
     def height(which: int, time: Floats) -> Floats:
         since_apex = (time - flights.apex_times[which]) / flights.clock
-        return np.asarray(flights.apex_heights[which] - flight_model.depth_at(since_apex)[0])
+        depth, _ = flight_model.depth_at(since_apex)
+        return np.asarray(flights.apex_heights[which] - depth)
 
     def height_difference(time: Floats) -> Floats:
         return height(flight + 1, time) - height(flight, time)
 
-    apex = flights.apex_times[flight : flight + 1]
-    next_apex = flights.apex_times[flight + 1 : flight + 2]
+    apex = flights.apex_times[[flight]]
+    next_apex = flights.apex_times[[flight + 1]]
+    # at its own apex each is the higher one, so that they cross between the two
     if not (height_difference(apex)[0] < 0.0 < height_difference(next_apex)[0]):
         return float("nan")
     meeting_time = find_root(height_difference, apex, next_apex)

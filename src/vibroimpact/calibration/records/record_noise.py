@@ -36,6 +36,8 @@ def sample_label(lines: Sequence[int] | None) -> Callable[[int], str]:
     """
 
     def label_of(index: int) -> str:
-        return f"sample {index + 1}" if lines is None else f"line {lines[index]}"
+        if lines is None:
+            return f"sample {index + 1}"
+        return f"line {lines[index]}"
 
     return label_of

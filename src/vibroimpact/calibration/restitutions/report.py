@@ -43,10 +43,12 @@ def report_of(restitutions: Restitutions) -> Report:
 def restitution_table(restitutions: Restitutions) -> Table:
     """Return the table of the restitutions with their intervals."""
     decimals = max(0, -round(math.log10(restitutions.rounding))) + 1
-    intervals = [
-        f"{low:.{decimals}f} to {high:.{decimals}f}" if math.isfinite(low) else MISSING
-        for low, high in restitutions.intervals
-    ]
+    intervals = []
+    for low, high in restitutions.intervals:
+        interval = MISSING
+        if math.isfinite(low):
+            interval = f"{low:.{decimals}f} to {high:.{decimals}f}"
+        intervals.append(interval)
     rows = [str(row + 1) for row in range(len(restitutions.count))]
     return Table(
         (
@@ -61,33 +63,37 @@ def restitution_table(restitutions: Restitutions) -> Table:
 
 def status_sentence(restitutions: Restitutions) -> str:
     """Return how many restitutions there are."""
-    number = int(restitutions.count.sum())
-    of = "" if number == len(restitutions.count) else f", means of {number} impacts"
-    return (
-        f"{len(restitutions.count)} "
-        f"restitution{'s' if len(restitutions.count) > 1 else ''} over the "
-        f"approach speed{of}."
-    )
+    impact_count = int(restitutions.count.sum())
+    row_count = len(restitutions.count)
+    ending = "s" if row_count > 1 else ""
+    means = ""
+    if impact_count != row_count:
+        means = f", means of {impact_count} impacts"
+    return f"{row_count} restitution{ending} over the approach speed{means}."
 
 
 def noise_sentence(restitutions: Restitutions) -> str:
     """Return from where the intervals are."""
     many = len(restitutions.count) > 1
-    of = ["the scatter about each fit"] if many else []
-    if not math.isnan(restitutions.deviation[0]):
-        of = [
-            "the standard "
-            f"deviation{'s of the table and the scatter beyond them' if many else ' of the table'}"
-        ]
+    deviations_known = not math.isnan(restitutions.deviation[0])
+    sources = []
+    if deviations_known and many:
+        sources.append("the standard deviations of the table and the scatter beyond them")
+    elif deviations_known:
+        sources.append("the standard deviation of the table")
+    elif many:
+        sources.append("the scatter about each fit")
     if restitutions.by_speeds:
         what = f"{restitutions.rounding:g} m/s to which the separation speeds"
     else:
         what = f"{restitutions.rounding:g} to which the values"
-    of.append(f"the step of {what} are rounded")
-    means = "" if (restitutions.count == 1.0).all() else " A scatter is that of single impacts."
+    sources.append(f"the step of {what} are rounded")
+    means = ""
+    if not (restitutions.count == 1.0).all():
+        means = " A scatter is that of single impacts."
     exact = "approach speeds" if restitutions.by_speeds else "speeds"
     return (
-        f"The intervals of the fits follow from {', and from '.join(of)}; {exact} "
+        f"The intervals of the fits follow from {', and from '.join(sources)}; {exact} "
         f"are taken as exact.{means}"
     )
 
@@ -111,10 +117,7 @@ def restitution_rows(restitutions: Restitutions) -> list[dict[str, Any]]:
     return [
         {
             "count": int(number),
-            **{
-                name: float(values[row]) if math.isfinite(values[row]) else None
-                for name, values in columns.items()
-            },
+            **{name: _finite(values[row]) for name, values in columns.items()},
         }
         for row, number in enumerate(restitutions.count)
     ]
@@ -126,8 +129,15 @@ def _write_restitutions(restitutions: Restitutions, path: Path) -> None:
     write_rows(rows, path)
 
 
+def _finite(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
 def _summary(restitutions: Restitutions) -> dict[str, Any]:
     """Return the content of `summary.json`."""
+    by_speed = None
+    if restitutions.function is not None:
+        by_speed = restitutions.function.table()
     return {
         "name": Path(restitutions.source).name,
         "version": __version__,
@@ -137,7 +147,7 @@ def _summary(restitutions: Restitutions) -> dict[str, Any]:
             "rounding": restitutions.rounding,
             "rows": restitution_rows(restitutions),
             "fits": fits_document(restitutions.laws, restitutions.confidence),
-            "by_speed": None if restitutions.function is None else restitutions.function.table(),
+            "by_speed": by_speed,
             "doubts": list(restitutions.doubts),
         },
     }

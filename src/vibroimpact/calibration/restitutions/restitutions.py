@@ -94,7 +94,9 @@ class Restitutions(Reported, reported_in="vibroimpact.calibration.restitutions.r
             float(self.approach_speed.max()),
         )
         least, largest = function.extremes
-        return function if least > 0.0 and largest <= 1.0 else None
+        if least > 0.0 and largest <= 1.0:
+            return function
+        return None
 
     @property
     def intervals(self) -> Floats:
@@ -156,14 +158,20 @@ def load_restitutions(
     count = quantities.get("count", np.ones(len(table.lines)))
     by_speeds = "restitution" not in quantities
     measured = "separation_speed" if by_speeds else "restitution"
-    restitution = quantities[measured] / speed if by_speeds else quantities[measured]
+    restitution = quantities[measured]
+    if by_speeds:
+        restitution = restitution / speed
     _check_height(table, restitution, by_speeds=by_speeds)
     _check_deviations(table, measured)
     rounding = rounding_step(quantities[measured])
     known = quantities.get(f"{measured}{DEVIATION}")
-    # of the restitution by what was measured
-    slope = 1.0 / speed if by_speeds else np.ones(len(speed))
-    deviation = np.full(len(speed), np.nan) if known is None else slope * known / np.sqrt(count)
+    # derivative of the restitution by what was measured
+    slope = np.ones(len(speed))
+    if by_speeds:
+        slope = 1.0 / speed
+    deviation = np.full(len(speed), np.nan)
+    if known is not None:  # of one impact; a row is the mean of several
+        deviation = slope * known / np.sqrt(count)
     # that of a uniform distribution over a step
     rounding_variance = (slope * rounding) ** 2 / 12.0
     variance = np.nan_to_num(deviation) ** 2 + rounding_variance
@@ -184,7 +192,9 @@ def load_restitutions(
 
 def _check_deviations(table: TableFile, measured: str) -> None:
     """Check that standard deviations are those of the measured column."""
-    other = "restitution" if measured == "separation_speed" else "separation_speed"
+    other = "separation_speed"
+    if measured == "separation_speed":
+        other = "restitution"
     if f"{other}{DEVIATION}" in table.columns:
         has = name_in_file(table, f"{other}{DEVIATION}")
         column = name_in_file(table, measured)
