@@ -91,15 +91,17 @@ def delay_between(
     >>> round(1e3 * found.time, 4), found.polarity.tolist(), found.correlation.round(4).tolist()
     (0.34, [-1.0], [1.0])
     """
+    # padded to twice the length, so that no lag wraps the end of a signal around to its begin
     length = fft.next_fast_len(2 * later.shape[1], real=True)
     frequency = fft.rfftfreq(length, 1.0 / rate)
     gain = _gain(frequency, band)
     later_spectrum = gain * fft.rfft(later, length)
     earlier_spectrum = gain * fft.rfft(earlier, length)
     # the one-sided spectrum holds all frequencies twice, but zero and half the rate
-    weights = np.where((frequency == 0.0) | (frequency == 0.5 * rate), 1.0, 2.0) / length
-    later_norm = np.sqrt((weights * np.abs(later_spectrum) ** 2).sum(axis=1))
-    earlier_norm = np.sqrt((weights * np.abs(earlier_spectrum) ** 2).sum(axis=1))
+    is_single = (frequency == 0.0) | (frequency == 0.5 * rate)
+    weights = np.where(is_single, 1.0, 2.0) / length
+    later_norm = _norms(later_spectrum, weights)
+    earlier_norm = _norms(earlier_spectrum, weights)
     norms = np.maximum(later_norm * earlier_norm, 1e-300)
     cross_spectrum = later_spectrum * earlier_spectrum.conj() / norms[:, None]
 
@@ -119,6 +121,11 @@ def delay_between(
     correlation = (cross_spectrum @ (weights * turn)).real
     gain = correlation * later_norm / np.maximum(earlier_norm, 1e-300)
     return Delay(time, polarity, polarity * correlation, gain)
+
+
+def _norms(spectrum: Complex, weights: Floats) -> Floats:
+    """Return the roots of the energies of signals with one-sided spectra, by Parseval's theorem."""
+    return np.asarray(np.sqrt((weights * np.abs(spectrum) ** 2).sum(axis=1)))
 
 
 def _top_near(time: float, spectrum: Complex, frequency: Floats, rate: float) -> float:

@@ -97,7 +97,9 @@ def aligned(
     for turn in range(_ROUNDS):
         for touch in range(count):
             if turn > 0:  # the mean of the others
-                common = _mean(sounds, np.where(np.arange(count) == touch, 0.0, gain))
+                gain_of_others = gain.copy()
+                gain_of_others[touch] = 0.0
+                common = _mean(sounds, gain_of_others)
             slope = fft.irfft(1j * omega * fft.rfft(common), padded_length)
             # the common sound is known only where all sounds are
             known_as_shifted = [
