@@ -143,12 +143,13 @@ def read_chunk(
         stored = (file.attrs["study"], file.attrs["first"], file.attrs["size"])
         if stored != (study, chunk.first, chunk.size):
             raise ValueError("it is of another study, or has other drops")
+        stored_arrays = file["arrays"]
         arrays = {}
-        for name in file["arrays"]:
+        for name in stored_arrays:
             if names is None or name in names:
                 # by name and with [()], which raise errors for damage: items() would return None,
                 # and np.asarray an object array
-                arrays[name] = np.asarray(file["arrays"][name][()])
+                arrays[name] = np.asarray(stored_arrays[name][()])
         reasons = [reason.decode() for reason in file["failures/reason"][()]]
         indices = file["failures/place"][()].tolist()
         return ChunkResult(arrays, dict(zip(indices, reasons, strict=True)))

@@ -262,12 +262,13 @@ def _failed(drop: int, error: Exception) -> _DropResults:
 
 def _kept_results(chunk: _Chunk, drop: int, response: Response) -> _DropResults:
     """Return the kept results of one drop."""
-    signals = _signal_columns(chunk, response) if "signals" in chunk.keep else {}
     columns = _columns(response, chunk.keep)
     if response.problem.vibrates:
         columns["left_in_vibration_J"] = response.rest.left
     columns |= limit_columns(drop_conditions(response, columns), 1)
-    return _DropResults(np.array([drop]), {**columns, **signals}, {})
+    if "signals" in chunk.keep:
+        columns |= _signal_columns(chunk, response)
+    return _DropResults(np.array([drop]), columns, {})
 
 
 def _signal_columns(chunk: _Chunk, response: Response) -> dict[str, NDArray[Any]]:
@@ -297,8 +298,9 @@ def _columns(response: Response, keep: tuple[str, ...]) -> dict[str, NDArray[Any
     Columns of the impact table are of shape (drops, impacts), with NaN after the last impact.
     """
     impacts = {name: np.atleast_2d(values) for name, values in response.impacts.items()}
+    happened = np.isfinite(impacts["impact"])
     columns: dict[str, NDArray[Any]] = {
-        "number_of_impacts": np.isfinite(impacts["impact"]).sum(axis=1).astype(float),
+        "number_of_impacts": happened.sum(axis=1).astype(float),
         "end_time_s": response.end_time,
     }
     for peak, name in TOTAL.items():
@@ -307,8 +309,9 @@ def _columns(response: Response, keep: tuple[str, ...]) -> dict[str, NDArray[Any
     columns[OUTCOME] = np.array([outcome.code for outcome in response.outcomes], dtype=np.int8)
     for peak, name in FIRST.items():
         if name in impacts:
-            values = impacts[name]
-            columns[peak] = values[:, 0] if values.size else np.full(len(response), np.nan)
+            columns[peak] = np.full(len(response), np.nan)
+            if impacts[name].size:
+                columns[peak] = impacts[name][:, 0]
     for peak, name in LARGEST.items():
         # fmax ignores NaN without a warning for drops that have no impact
         columns[peak] = np.fmax.reduce(impacts[name], axis=1, initial=np.nan)
@@ -328,11 +331,19 @@ def _gathered(results: list[_DropResults], count: int) -> dict[str, NDArray[Any]
     for result in results:
         for name, values in result.arrays.items():
             if name not in gathered:
-                # drops may differ in the number of impacts and of samples
-                shapes = [other.arrays[name].shape[1:] for other in results if name in other.arrays]
-                widest = np.max(shapes, axis=0).astype(int)
                 fill_value = np.nan if values.dtype.kind == "f" else 0
-                gathered[name] = np.full((count, *widest), fill_value, dtype=values.dtype)
-            index: Any = (result.drops, *(slice(length) for length in values.shape[1:]))
+                shape = (count, *_widest(results, name))
+                gathered[name] = np.full(shape, fill_value, dtype=values.dtype)
+            own_lengths = [slice(length) for length in values.shape[1:]]
+            index: Any = (result.drops, *own_lengths)
             gathered[name][index] = values
     return gathered
+
+
+def _widest(results: list[_DropResults], name: str) -> list[int]:
+    """Return the shape that holds an array of each drop.
+
+    Drops may differ in the number of impacts and of samples.
+    """
+    shapes = [result.arrays[name].shape[1:] for result in results if name in result.arrays]
+    return [max(lengths) for lengths in zip(*shapes, strict=True)]

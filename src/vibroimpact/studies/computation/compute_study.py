@@ -256,9 +256,9 @@ def _assemble(folder: Path, ledger: Ledger, sweep: Sweep) -> None:
     chunks = ledger.chunks("done")
     waiting = ledger.chunks("waiting")
     if waiting:
+        verb = "is" if len(waiting) == 1 else "are"
         raise ComputationError(
-            f"{folder}: {len(waiting)} of the chunks {'is' if len(waiting) == 1 else 'are'} not "
-            "done; go on with --resume"
+            f"{folder}: {len(waiting)} of the chunks {verb} not done; go on with --resume"
         )
     rates = {sensor.name: sensor.rate for sensor in sweep.case.sensors}
     try:
@@ -276,7 +276,9 @@ def _assemble(folder: Path, ledger: Ledger, sweep: Sweep) -> None:
             _summary(sweep),
         )
     except OSError as error:
-        reason = os.strerror(error.errno) if error.errno else str(error)
+        reason = str(error)
+        if error.errno:
+            reason = os.strerror(error.errno)
         raise ComputationError(
             f"{folder}: the results can't be put together: {reason}; see to the disk, then go on "
             "with --resume"
@@ -363,6 +365,8 @@ def chunk_size(sweep: Sweep, memory: float) -> int:
     """
     most = _CHUNK
     if sweep.deforms:
-        falls_per_plate = 1 if sweep.population is None else sweep.population.falls_per_plate
+        falls_per_plate = 1
+        if sweep.population is not None:
+            falls_per_plate = sweep.population.falls_per_plate
         most = max(_ELASTIC_CHUNK, min(falls_per_plate, sweep.size // _PLATE_CHUNKS))
     return max(1, min(most, int(memory / _drop_memory(sweep))))

@@ -70,10 +70,10 @@ def dask_workers(address: str, number: int, setup: Setup) -> Iterator[WorkerPool
         "scheduler_kwargs": {"dashboard": False, "dashboard_address": "localhost:0"},
         "silence_logs": logging.CRITICAL,
     }
-    with (
-        LocalCluster(**options) if address == LOCAL else nullcontext(address) as cluster,
-        Client(cluster) as client,
-    ):
+    scheduler: Any = nullcontext(address)
+    if address == LOCAL:
+        scheduler = LocalCluster(**options)
+    with scheduler as cluster, Client(cluster) as client:
         client.register_plugin(Setting())
 
         def in_flight() -> int:

@@ -65,25 +65,31 @@ def _rows(
     chunk: Span, plan: Plan, result: ChunkResult, peaks: Sequence[str]
 ) -> Iterator[tuple[Any, ...]]:
     """Yield the rows of the drops of a chunk."""
-    numbers = range(chunk.first, chunk.first + chunk.size)
-    points = [
-        [as_text(value) for value in values.tolist()]
-        for values in plan.points(chunk.first, chunk.size).values()
-    ]
-    # a peak is not there where all drops of the chunk failed
-    no_values = np.full(chunk.size, np.nan)
-    columns = [_cells(result.arrays.get(name, no_values)) for name in peaks]
-    codes = result.arrays.get(OUTCOME, np.full(chunk.size, Outcome.FAILED.code))
-    outcomes = [OUTCOMES[code].value for code in codes]
-    exceeded = result.arrays.get(DOUBTS, np.zeros(chunk.size, dtype=np.int32)).tolist()
-    names_of_mask = {mask: _exceeded_limits(mask) for mask in set(exceeded)}
-    doubts = [names_of_mask[mask] for mask in exceeded]
-    reasons = [result.failures.get(drop, "") for drop in range(chunk.size)]
-    yield from zip(numbers, *points, *columns, outcomes, doubts, reasons, strict=True)
+    # a chunk has no array of what none of its drops has, as where all of them failed
+    arrays = {
+        **dict.fromkeys(peaks, np.full(chunk.size, np.nan)),
+        OUTCOME: np.full(chunk.size, Outcome.FAILED.code),
+        DOUBTS: np.zeros(chunk.size, dtype=np.int32),
+        **result.arrays,
+    }
+    columns: list[Sequence[Any]] = [range(chunk.first, chunk.first + chunk.size)]
+    for values in plan.points(chunk.first, chunk.size).values():
+        columns.append([as_text(value) for value in values.tolist()])
+    for name in peaks:
+        columns.append(_cells(arrays[name]))
+    columns.append([OUTCOMES[code].value for code in arrays[OUTCOME]])
+    columns.append(_exceeded_limits(arrays[DOUBTS].tolist()))
+    columns.append([result.failures.get(drop, "") for drop in range(chunk.size)])
+    yield from zip(*columns, strict=True)
 
 
-def _exceeded_limits(mask: int) -> str:
-    """Return the names of the limits whose bits are set."""
+def _exceeded_limits(masks: Sequence[int]) -> list[str]:
+    """Return the names of the limits that each drop is beyond, whose bits are set."""
+    names = {mask: _names_of_limits(mask) for mask in set(masks)}
+    return [names[mask] for mask in masks]
+
+
+def _names_of_limits(mask: int) -> str:
     return " ".join(name for bit, name in enumerate(limits()) if mask >> bit & 1)
 
 

@@ -151,7 +151,8 @@ class Study(WithReport, reported_in="vibroimpact.studies.report.report"):
 
     def __repr__(self) -> str:
         lengths = ", ".join(f"{name} {length}" for name, length in self.dimensions.items())
-        return f"<Study of {self.size} drop{'' if self.size == 1 else 's'}: {lengths}>"
+        drops = "drop" if self.size == 1 else "drops"
+        return f"<Study of {self.size} {drops}: {lengths}>"
 
     def times(self, sensor: str) -> Floats:
         """Return the time of each sample in the signal of a sensor [s].
@@ -196,8 +197,9 @@ def study_doubts(dataset: Path) -> list[StudyDoubt]:
         for mask, limit in zip(masks, limits, strict=True):
             exceeds = (flags & mask) != 0
             if exceeds.any():
-                numbers = np.where(exceeds, read_array(file[f"{LIMIT}{limit}"]).ravel(), -np.inf)
-                worst = int(np.argmax(numbers))
+                numbers = read_array(file[f"{LIMIT}{limit}"]).ravel()
+                # numbers of other drops may be NaN, which would be the largest
+                worst = int(np.argmax(np.where(exceeds, numbers, -np.inf)))
                 doubts.append(StudyDoubt(limit, int(exceeds.sum()), worst, float(numbers[worst])))
     return sorted(doubts, key=lambda doubt: -doubt.drops)
 
@@ -332,7 +334,9 @@ def _label(variable: h5py.Dataset) -> NDArray[Any]:
     """Return a label of each fall: a name, or a number."""
     codes = read_array(variable)
     names = str(variable.attrs.get("flag_meanings", "")).split()
-    return np.array(names, dtype=object)[codes] if names else np.asarray(codes)
+    if not names:
+        return np.asarray(codes)
+    return np.asarray(np.array(names, dtype=object)[codes])
 
 
 def _coordinate(variable: h5py.Dataset) -> NDArray[Any]:

@@ -170,11 +170,13 @@ def _write_labels(file: h5py.File, plan: Plan, scales: Sequence[h5py.Dataset]) -
             numbers = new_array(file, label, column.astype(np.int32))
             _describe(numbers, LABELS[label], scales)
             continue
+        # flags as in the CF conventions, whose meanings are words separated by blanks
         names, codes = np.unique(column.astype(str), return_inverse=True)
         flags = new_array(file, label, codes.astype(np.int16))
         _describe(flags, LABELS[label], scales)
         flags.attrs["flag_values"] = np.arange(len(names), dtype=np.int16)
-        flags.attrs["flag_meanings"] = " ".join(name.replace(" ", "_") for name in names.tolist())
+        flag_words = [name.replace(" ", "_") for name in names.tolist()]
+        flags.attrs["flag_meanings"] = " ".join(flag_words)
 
 
 def _new_scale(
@@ -232,7 +234,9 @@ def _new_variable(
     elif name == OUTCOME:
         fill_value = Outcome.FAILED.code
     shape = tuple(len(scale) for scale in own_scales)
-    chunks = {"chunks": chunk_shape(shape, dtype.itemsize), **CHECKED} if prod(shape) else {}
+    chunks: dict[str, Any] = {}
+    if prod(shape):  # an empty variable has no chunks, and so no checksums
+        chunks = {"chunks": chunk_shape(shape, dtype.itemsize), **CHECKED}
     variable = file.create_dataset(name, shape=shape, dtype=dtype, fillvalue=fill_value, **chunks)
     # flags as in the CF conventions
     if name == OUTCOME:
@@ -265,7 +269,9 @@ def _time_scale(
 
     It is one for all sensors if their rates are equal, else one for each.
     """
-    name = _TIME if len(set(rates.values())) == 1 else f"{_TIME}_{sensor}"
+    name = _TIME
+    if len(set(rates.values())) > 1:
+        name = f"{_TIME}_{sensor}"
     if name in file:
         return file[name]
     time = np.arange(samples) / rates[sensor]

@@ -72,7 +72,9 @@ class Listed:
 
     def quantiles(self, parts: Floats) -> Values:
         """Return the quantiles, in the order of the list."""
-        weights = np.ones(len(self.values)) if self.weights is None else self.weights
+        weights = self.weights
+        if weights is None:
+            weights = (1.0,) * len(self.values)
         cumulative = np.cumsum(weights)
         index = np.searchsorted(cumulative / cumulative[-1], parts, side="right")
         return np.asarray(self.levels()[np.minimum(index, len(self.values) - 1)])
@@ -107,14 +109,19 @@ class Spaced:
 
     def levels(self) -> Values:
         """Return the levels, including both limits."""
-        spaced = np.linspace if self.scale == "linear" else np.geomspace
-        return np.asarray(spaced(self.start, self.end, self.number))
+        if self.scale == "linear":
+            return np.linspace(self.start, self.end, self.number)
+        return np.geomspace(self.start, self.end, self.number)
 
     def quantiles(self, parts: Floats) -> Values:
         """Return the quantiles of the uniform or log-uniform distribution."""
         if self.scale == "linear":
             return self.start + parts * (self.end - self.start)
         return np.asarray(self.start * (self.end / self.start) ** parts)
+
+
+def _log(limit: float) -> float:
+    return math.log(limit) if limit > 0.0 else -math.inf
 
 
 @dataclass(frozen=True)
@@ -166,9 +173,10 @@ class Normal:
         if not high - low > 1e-9:
             limits = Range(at_least=self.at_least, at_most=self.at_most).words
             percentage = 100 * max(high - low, 0.0)
+            key = "at_least" if math.isfinite(self.at_least) else "at_most"
             raise InputError(
                 f"{percentage:.2g} % of the distribution is {limits}; it must be truncated less",
-                "at_least" if math.isfinite(self.at_least) else "at_most",
+                key,
             )
 
     def _normal_parameters(self) -> tuple[float, float]:
@@ -188,7 +196,7 @@ class Normal:
         mean, deviation = self._normal_parameters()
         limits = [self.at_least, self.at_most]
         if self.lognormal:
-            limits = [math.log(limit) if limit > 0.0 else -math.inf for limit in limits]
+            limits = [_log(limit) for limit in limits]
         low, high = (float(ndtr((limit - mean) / deviation)) for limit in limits)
         return low, high
 

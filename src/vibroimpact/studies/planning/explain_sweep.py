@@ -23,10 +23,8 @@ def explain_sweep(sweep: Sweep) -> RenderableType:
     drawn = f", drawn with seed {section.seed}" if section.samples else ""
     kept = " and ".join(dict.fromkeys(["peaks", *section.keep]))
     size = f"about {digits(sweep.bytes / 1e6, 2)} MB"
-    heading = (
-        f"A study of {sweep.size:,} drop{'' if sweep.size == 1 else 's'}: "
-        f"{section.design}{drawn}; keeps {kept}, {size}."
-    )
+    drops = "drop" if sweep.size == 1 else "drops"
+    heading = f"A study of {sweep.size:,} {drops}: {section.design}{drawn}; keeps {kept}, {size}."
     return Group(
         Text(heading, style="bold"),
         _axes_table(sweep),
@@ -39,17 +37,24 @@ def _axes_table(sweep: Sweep) -> TerminalTable:
     """Return a table of the swept keys, of a population with those of each class."""
     units = _units(sweep)
     is_drawn = sweep.section.samples is not None
-    # class, swept key and axis; the keys of all classes come first, without a class
-    axes = [("", key, axis) for key, axis in sweep.axes.items()]
+    # the keys of all classes come first, without a class
+    axes_of_class: dict[str, Mapping[str, Axis]] = {"": sweep.axes}
     if sweep.population is not None:
-        for name, class_axes in sweep.population.own.items():
-            axes += [(name, key, axis) for key, axis in class_axes.items()]
-    columns = []
+        axes_of_class |= sweep.population.own
+    classes = []
+    keys = []
+    ranges = []
+    for name, axes in axes_of_class.items():
+        for key, axis in axes.items():
+            classes.append(name)
+            keys.append(key)
+            ranges.append(_description(axis, units[key], units, is_drawn=is_drawn))
+    columns = [
+        TerminalColumn("swept key", keys, text=True),
+        TerminalColumn("over", ranges, text=True),
+    ]
     if sweep.population is not None:
-        columns.append(TerminalColumn("class", [name for name, _, _ in axes], text=True))
-    columns.append(TerminalColumn("swept key", [key for _, key, _ in axes], text=True))
-    ranges = [_description(axis, units[key], units, is_drawn=is_drawn) for _, key, axis in axes]
-    columns.append(TerminalColumn("over", ranges, text=True))
+        columns.insert(0, TerminalColumn("class", classes, text=True))
     return TerminalTable(columns)
 
 
@@ -93,7 +98,10 @@ def _classes(sweep: Sweep, units: Mapping[str, str]) -> dict[str, Any]:
 
 def _units(sweep: Sweep) -> dict[str, str]:
     """Return the SI unit of each swept key; "" for one that is no quantity."""
-    return {key: quantity.unit if quantity else "" for key, quantity in sweep.quantities.items()}
+    units = {}
+    for key, quantity in sweep.quantities.items():
+        units[key] = quantity.unit if quantity else ""
+    return units
 
 
 def _data(axis: Axis) -> dict[str, Any]:
@@ -101,7 +109,9 @@ def _data(axis: Axis) -> dict[str, Any]:
     if isinstance(axis, Listed):
         return {"values": axis.values, "weights": axis.weights}
     if isinstance(axis, Spaced):
-        distribution = {"distribution": "uniform"} if axis.is_random else {}
+        distribution = {}
+        if axis.is_random:
+            distribution = {"distribution": "uniform"}
         return {
             **distribution,
             "from": axis.start,
@@ -120,13 +130,21 @@ def _data(axis: Axis) -> dict[str, Any]:
         }
     assert isinstance(axis, Normal)
     return {
-        "distribution": "lognormal" if axis.lognormal else "normal",
+        "distribution": _name(axis),
         "mean": axis.mean,
         "standard_deviation": axis.standard_deviation,
         "at_least": axis.at_least,
         "at_most": axis.at_most,
         "number": axis.number,
     }
+
+
+def _name(axis: Normal) -> str:
+    return "lognormal" if axis.lognormal else "normal"
+
+
+def _value_text(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def _description(axis: Axis, unit: str, units: Mapping[str, str], *, is_drawn: bool) -> str:
@@ -144,25 +162,28 @@ def _description(axis: Axis, unit: str, units: Mapping[str, str], *, is_drawn: b
         Whether its values are drawn, so that they have no levels.
     """
     if isinstance(axis, Listed):
-        values = [f"{value:g}" if isinstance(value, float) else str(value) for value in axis.values]
+        values = [_value_text(value) for value in axis.values]
         if len(values) <= 8:
             return f"{', '.join(values)} {unit}".rstrip()
         return f"{len(values)} values, {values[0]} to {values[-1]} {unit}".rstrip()
     number = "" if is_drawn else f"{len(axis)} values "
     if isinstance(axis, Spaced):
         limits = f"{number}from {axis.start:g} to {axis.end:g} {unit}".rstrip()
-        return f"{limits}, logarithmic" if axis.scale == "log" else limits
+        if axis.scale == "log":
+            return f"{limits}, logarithmic"
+        return limits
     if isinstance(axis, Scaled):
         value = f"{axis.value:g} {unit}".rstrip()
         reference = f"{axis.at:g} {units[axis.of]}".rstrip()
-        power = f" to the power of {axis.exponent:g}" if axis.exponent != 1.0 else ""
+        power = ""
+        if axis.exponent != 1.0:
+            power = f" to the power of {axis.exponent:g}"
         factor = _description(axis.factor, "", units, is_drawn=is_drawn)
         per = f" for each {axis.each}" if axis.each else ""
         return f"{value} at {axis.of} = {reference}, proportional to it{power}, times {factor}{per}"
     assert isinstance(axis, Normal)
-    name = "lognormal" if axis.lognormal else "normal"
     deviation = f"{axis.standard_deviation:g} {unit}".rstrip()
-    text = f"{number}{name}, mean {axis.mean:g}, standard deviation {deviation}"
+    text = f"{number}{_name(axis)}, mean {axis.mean:g}, standard deviation {deviation}"
     if math.isfinite(axis.at_least):
         text += f", at least {axis.at_least:g}"
     if math.isfinite(axis.at_most):

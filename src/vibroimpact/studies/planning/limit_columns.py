@@ -56,7 +56,9 @@ def limit_columns(drops: Conditions, count: int) -> dict[str, NDArray[Any]]:
             doubts |= np.left_shift(exceeds, bit, dtype=np.int32)
     columns: dict[str, NDArray[Any]] = {DOUBTS: doubts}
     for name, number in numbers.items():
-        columns[f"{LIMIT}{name}"] = np.array(np.broadcast_to(number, count), dtype=np.float32)
+        # what the drops of a batch have in common has one number
+        of_each = np.broadcast_to(number, count)
+        columns[f"{LIMIT}{name}"] = np.array(of_each, dtype=np.float32)
     return columns
 
 
@@ -99,9 +101,12 @@ def drop_conditions(response: Response, peaks: Mapping[str, NDArray[Any]]) -> Co
     for body, truncation_error in response.truncation.items():
         highest_frequency = float(getattr(problem, body).modes.frequencies[-1])
         modes[body] = (truncation_error, highest_frequency)
+    duration = np.nan
+    if len(impacts["impact"]):
+        duration = time_of_contact(impacts)
     summary = replace(
         _peak_summary(peaks),
-        duration=time_of_contact(impacts) if len(impacts["impact"]) else np.nan,
+        duration=duration,
         deflection=largest_bending(response),
         modes=modes,
         changes=change_by_impact(impacts, problem.tolerance),

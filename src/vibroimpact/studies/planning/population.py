@@ -144,8 +144,9 @@ class Population:
 
 def _each(key: str, axis: Axis) -> Each:
     """Return whether a key is drawn for each plate, rock or fall."""
-    stated = axis.each if isinstance(axis, Scaled) else None
-    return stated or drawn_for(key)
+    if isinstance(axis, Scaled) and axis.each:
+        return axis.each
+    return drawn_for(key)
 
 
 def _drawn(axis: Axis, key: str, number: Indices, seed: int) -> Values:

@@ -312,7 +312,9 @@ def _read_column(table: ColumnTable, quantity: Quantity) -> Listed:
     Its header gives the units.
     """
     name = name_and_unit(table.column)[0]
-    weights = None if table.weights is None else name_and_unit(table.weights)[0]
+    weights = None
+    if table.weights is not None:
+        weights = name_and_unit(table.weights)[0]
     units = {name: quantity.unit}
     if weights:
         units[weights] = ""

@@ -140,7 +140,9 @@ class Sweep:
     def window(self) -> Window | None:
         """The part of the signals that is kept; None for all."""
         window = self.section.window
-        return None if window is None else Window(window.before, window.length)
+        if window is None:
+            return None
+        return Window(window.before, window.length)
 
     @property
     def bytes(self) -> float:
@@ -150,7 +152,9 @@ class Sweep:
             impacts = impact_limit(self.case) or LONG
         samples: float = 0
         if "signals" in self.section.keep:
-            kept_time = self.window.length if self.window else self.case.run.duration or 0.0
+            kept_time = self.case.run.duration or 0.0
+            if self.window:
+                kept_time = self.window.length
             samples = sum(sensor.rate * kept_time for sensor in self.case.sensors)
         # numbers of a drop in double precision, and in single precision
         double = len(self.quantities) + len(PEAKS) + impacts * len(IMPACT_COLUMNS)
@@ -173,10 +177,11 @@ class Sweep:
 
         They are in the order of the files.
         """
-        keys = {
-            key: (quantity.unit or "1", quantity.meaning) if quantity else ("1", key)
-            for key, quantity in self.quantities.items()
-        }
+        keys = {}
+        for key, quantity in self.quantities.items():
+            keys[key] = ("1", key)  # of names, say, that are no quantity
+            if quantity:
+                keys[key] = (quantity.unit or "1", quantity.meaning)
         sensors = {}
         if "signals" in self.section.keep:
             sensors = {sensor.name: sensor.sensor() for sensor in self.case.sensors}
@@ -221,7 +226,11 @@ def different(values: Values) -> list[Any]:
 def _meshes(table: Mapping[str, Any]) -> Iterator[Path]:
     """Yield the mesh files of a case."""
     for body in ("sphere", "plate"):
-        mesh = table[body].get("mesh") if isinstance(table.get(body), dict) else None
-        file = mesh.get("file") if isinstance(mesh, dict) else mesh
+        section = table.get(body)
+        if not isinstance(section, dict):
+            continue
+        file = section.get("mesh")
+        if isinstance(file, dict):
+            file = file.get("file")
         if isinstance(file, str) and Path(file).is_file():
             yield Path(file)

@@ -72,7 +72,9 @@ def load_sweep(source: str | PathLike[str], samples: int | None = None) -> Sweep
     ... )
     (140, 10)
     """
-    changes = {} if samples is None else {"sweep.samples": samples}
+    changes = {}
+    if samples is not None:
+        changes = {"sweep.samples": samples}
     return prefix_errors(source, lambda: sweep_of(with_values(load_table(source), changes)))
 
 
@@ -372,7 +374,9 @@ def _repeated_level(axis: Axis) -> str | None:
         return shortened(level, 80) if count > 1 else None
     ordered = np.sort(levels)
     repeated = np.flatnonzero(ordered[1:] == ordered[:-1])
-    return repr(ordered[repeated[0]].item()) if repeated.size else None
+    if not repeated.size:
+        return None
+    return repr(ordered[repeated[0]].item())
 
 
 def _flat(over: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
@@ -445,4 +449,6 @@ def _remedy(axis: Axis) -> str:
 
 def _level(value: Any) -> str:
     """Return a value of a swept key for a message."""
-    return f"{value:g}" if isinstance(value, float) else quoted(value)
+    if isinstance(value, float):
+        return f"{value:g}"
+    return quoted(value)

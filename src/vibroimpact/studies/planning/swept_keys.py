@@ -31,10 +31,10 @@ def case_at(table: Mapping[str, Any], values: Mapping[str, Any]) -> Case:
     InputError
         If it is not a valid case.
     """
-    plain = {
-        key: value.item() if isinstance(value, np.generic) else value
-        for key, value in values.items()
-    }
+    plain = dict(values)
+    for key, value in values.items():
+        if isinstance(value, np.generic):
+            plain[key] = value.item()
     return case_of(with_values(table, plain))
 
 

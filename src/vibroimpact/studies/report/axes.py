@@ -86,10 +86,11 @@ class StudyAxis:
 
 def study_axes(study: Study) -> list[StudyAxis]:
     """Return the axes of a study in order; the class of a population comes first."""
-    named = {CLASS: study.labels[CLASS]} if CLASS in study.labels else {}
+    columns = dict(study.coordinates)
+    if CLASS in study.labels:
+        columns = {CLASS: study.labels[CLASS], **columns}
     return [
-        _axis(key, *study.meanings[key], _as_numbers(values))
-        for key, values in {**named, **study.coordinates}.items()
+        _axis(key, *study.meanings[key], _as_numbers(values)) for key, values in columns.items()
     ]
 
 
@@ -135,11 +136,11 @@ def key_words(key: str, meaning: str) -> str:
     *way, last = key.split(".")
     if way == ["contact"] and meaning != key:
         return meaning.split(",")[0]
-    name = meaning.split(" of ")[0] if way and way[-1] in _UNSAID and meaning != key else last
-    return " of the ".join(
-        part.replace("_", " ")
-        for part in (name, *(part for part in reversed(way) if part not in _UNSAID))
-    )
+    name = last
+    if way and way[-1] in _UNSAID and meaning != key:
+        name = meaning.split(" of ")[0]
+    owners = [section for section in reversed(way) if section not in _UNSAID]
+    return " of the ".join([name, *owners]).replace("_", " ")
 
 
 def _as_numbers(values: NDArray[Any]) -> NDArray[Any]:

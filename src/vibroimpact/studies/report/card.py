@@ -44,7 +44,13 @@ def data_card(study: Study) -> str:
         The completed study.
     """
     signals = [_signal(study, variable) for variable in study.shapes if variable.startswith(SIGNAL)]
-    kept = "Signals, values and labels" if signals else "Values and labels, without signals,"
+    if signals:
+        kept = "Signals, values and labels"
+        headings = ["variable", "quantity", "unit", "samples", "rate [Hz]"]
+        signal_parts = ["## Signals", _table(headings, signals)]
+    else:
+        kept = "Values and labels, without signals,"
+        signal_parts = []
     parts = [
         f"# {study.name[:1].upper() + study.name[1:]}",
         f"{drops_text(study.size)} of {_counted(study, ROCK)} on {_counted(study, PLATE)}, "
@@ -57,14 +63,7 @@ def data_card(study: Study) -> str:
         "all others once a rock, each independently."
         + "".join(f" {phrase}." for phrase in _following(study)),
         _table(["key", "meaning", *_names(study)], _drawn(study)),
-        *(
-            [
-                "## Signals",
-                _table(["variable", "quantity", "unit", "samples", "rate [Hz]"], signals),
-            ]
-            if signals
-            else []
-        ),
+        *signal_parts,
         "## Labels and groups",
         f"`{CLASS}` is the class of the rock, `{ROCK}` and `{PLATE}` number what falls "
         f"share. {_ALIKE} Split training and test data by "
@@ -78,7 +77,9 @@ def data_card(study: Study) -> str:
 
 def _split(study: Study) -> str:
     """Return by what else than rocks falls are split, and what that needs."""
-    return f", {_BY_PLATE}" if _number(study, PLATE) > 1 else f" ({_ONE_PLATE})"
+    if _number(study, PLATE) > 1:
+        return f", {_BY_PLATE}"
+    return f" ({_ONE_PLATE})"
 
 
 def _number(study: Study, label: str) -> int:
@@ -89,7 +90,8 @@ def _number(study: Study, label: str) -> int:
 def _counted(study: Study, label: str) -> str:
     """Return a number of rocks or plates in words."""
     number = _number(study, label)
-    return f"{number} {label}{'' if number == 1 else 's'}"
+    ending = "" if number == 1 else "s"
+    return f"{number} {label}{ending}"
 
 
 def _names(study: Study) -> list[str]:
@@ -136,7 +138,9 @@ def _following(study: Study) -> list[str]:
 
 def _signal(study: Study, variable: str) -> Sequence[str]:
     times = study.times(variable.removeprefix(SIGNAL))
-    rate = f"{1.0 / (times[1] - times[0]):.10g}" if len(times) > 1 else ""
+    rate = ""
+    if len(times) > 1:
+        rate = f"{1.0 / (times[1] - times[0]):.10g}"
     return (
         f"`{variable}`",
         study.meanings[variable][1],
@@ -149,13 +153,13 @@ def _signal(study: Study, variable: str) -> Sequence[str]:
 def _doubts(study: Study) -> Iterator[str]:
     """Yield what failed, and the limits of the theory that falls exceed."""
     for number, phrase in reasons(study):
-        yield (
-            f"* {drops_text(number)} failed and "
-            f"{'has no results' if number == 1 else 'have no results, such as'}: {phrase}."
-        )
+        lacks = "has no results" if number == 1 else "have no results, such as"
+        yield f"* {drops_text(number)} failed and {lacks}: {phrase}."
     known: Mapping[str, Any] = limits()
     for limit, drops, *_ in study.doubts:
-        title = known[limit].title if limit in known else limit
+        title = limit
+        if limit in known:  # another version may have had others
+            title = known[limit].title
         yield (
             f"* {title}: beyond the limit in {drops:,} of {study.size:,} falls (listed in "
             "`doubts` of `study.nc`)."

@@ -89,7 +89,9 @@ def _of_grid(
         makers["curves"] = partial(level_curves, study, axes, drawn, across, each)
     else:
         makers["maps"] = partial(maps_chart, study, axes, drawn, first, second)
-    return makers | (_over_axes(study, axes, drawn) if len(axes) > 2 else {})
+    if len(axes) > 2:
+        makers |= _over_axes(study, axes, drawn)
+    return makers
 
 
 def _of_samples(study: Study, drawn: list[Output]) -> dict[str, _Maker]:
@@ -118,7 +120,9 @@ def _two_axes(
     """Return the two axes of the largest effect on the first result if known, else the
     first two.
     """
-    strength = None if sensitivity is None else sensitivity.strength.get(drawn[0].name)
+    strength = None
+    if sensitivity is not None:
+        strength = sensitivity.strength.get(drawn[0].name)
     if len(axes) == 2 or strength is None:
         return axes[0], axes[1]
     strongest = np.argsort(np.nan_to_num(strength), kind="stable")[-2:]

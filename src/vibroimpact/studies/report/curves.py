@@ -47,28 +47,24 @@ def impact_curves(study: Study, axis: StudyAxis, outputs: list[Output]) -> Chart
     order = ascending_order(axis, _MOST)
     across = key_axis(axis)
     number = min(_impacts_kept(study), _MOST_IMPACTS)
-    table = {
-        result.name: on_grid(study, _column(study, result) or result.name)[order].reshape(
-            len(order), -1
-        )
-        for result in outputs
-    }
+    table = {}
+    for output in outputs:
+        variable = _column(study, output) or output.name
+        values = on_grid(study, variable)[order]
+        table[output.name] = values.reshape(len(order), -1)
     texts = [
         _texts_of_impact(study, outputs, table, order, impact, number)
         for impact in range(max(number, 1))
     ]
     panels = []
     for output in outputs:
-        kept = range(min(table[output.name].shape[1], len(texts)))
-        names = [f"impact {impact + 1}" if number > 1 else "" for impact in kept]
-        marks = [
-            _curve(axis, order, table[output.name][:, impact], impact, names[impact], texts[impact])
-            for impact in kept
-        ]
-        title = output.short if _column(study, output) else output.title
-        panels.append(
-            Panel(across, result_axis(output, ""), tuple(marks), shortened(visible(title), 60))
-        )
+        marks = []
+        # a column per impact, or one of peaks
+        for impact, values in enumerate(table[output.name].T[: len(texts)]):
+            name = f"impact {impact + 1}" if number > 1 else ""
+            marks.append(_curve(axis, order, values, impact, name, texts[impact]))
+        title = shortened(visible(_title(study, output)), 60)
+        panels.append(Panel(across, result_axis(output, ""), tuple(marks), title))
     return Chart(
         "curves", f"Over the {axis.words}", in_rows(panels), _impact_words(study, axis), HEIGHT
     )
@@ -93,10 +89,9 @@ def level_curves(
     order = ascending_order(over, _MOST)
     levels = ascending_order(each)
     across = key_axis(over)
-    names = [
-        f"{each.words} {level_words(each, level)}" if each.numeric else level_words(each, level)
-        for level in levels
-    ]
+    names = [level_words(each, level) for level in levels]
+    if each.numeric:
+        names = [f"{each.words} {name}" for name in names]
     texts: list[tuple[str, ...]] = [()] * len(levels)
     if len(axes) == 2 and study.size <= MOST_DROPS:
         drop_descriptions = np.array(
@@ -158,16 +153,14 @@ def _texts_of_impact(
         return ()
     results = {}
     for output in outputs:
-        column = _column(study, output)
         values = table[output.name]
-        results[output.short if column else output.title] = (
-            output.unit,
-            values[:, min(impact, values.shape[1] - 1)],
-        )
+        column = min(impact, values.shape[1] - 1)
+        results[_title(study, output)] = (output.unit, values[:, column])
     numbers = drop_numbers(study)[order]  # of a grid of one axis with several levels
-    return drop_texts(
-        study, results, numbers, np.full(len(numbers), impact + 1) if number > 1 else None
-    )
+    impacts = None
+    if number > 1:
+        impacts = np.full(len(numbers), impact + 1)
+    return drop_texts(study, results, numbers, impacts)
 
 
 def _impact_words(study: Study, axis: StudyAxis) -> str:
@@ -179,7 +172,9 @@ def _impact_words(study: Study, axis: StudyAxis) -> str:
             f"{phrase}; single impacts were not kept; these are the peaks of each drop. "
             f"{keys_told([axis])}"
         )
-    of_many = f" (the first {_MOST_IMPACTS} of {kept})" if kept > _MOST_IMPACTS else ""
+    of_many = ""
+    if kept > _MOST_IMPACTS:
+        of_many = f" (the first {_MOST_IMPACTS} of {kept})"
     if kept > 1:
         return f"{phrase}, a line an impact{of_many}. {keys_told([axis])}"
     return f"{phrase}. {keys_told([axis])}"
@@ -189,8 +184,15 @@ def _column(study: Study, output: Output) -> str:
     """Return the column of the impact table from which a result is taken; "" if there is
     none or it was not kept.
     """
-    column = PEAK_TABLE[output.name].column if output.name in PEAK_TABLE else ""
+    if output.name not in PEAK_TABLE:
+        return ""
+    column = PEAK_TABLE[output.name].column
     return column if column in study.shapes else ""
+
+
+def _title(study: Study, output: Output) -> str:
+    """Return the title of a result: the short one where it is told of single impacts."""
+    return output.short if _column(study, output) else output.title
 
 
 def _impacts_kept(study: Study) -> int:

@@ -96,11 +96,11 @@ def grouped(
         names.
     """
     values = {axis.key: values_at(study, axis, numbers) for axis in axes}
-    places_of = {
-        axis.key: places(axis, values[axis.key])
-        + (_offsets(len(numbers)) if not axis.numeric else 0.0)
-        for axis in axes
-    }
+    places_of = {}
+    for axis in axes:
+        places_of[axis.key] = places(axis, values[axis.key])
+        if not axis.numeric:  # aside from each other, as many drops have the same name
+            places_of[axis.key] = places_of[axis.key] + _offsets(len(numbers))
     keys = dict(others or {}) | {
         _key_label(axis): _key_values(axis, values[axis.key]) for axis in axes
     }
@@ -166,13 +166,10 @@ def drop_texts(
     """
     axes = [axis for axis in study_axes(study) if axis.varies]
     columns = [_told(axis, values_at(study, axis, numbers)) for axis in axes[:_MOST_KEYS]]
-    more = [f"and {len(axes) - _MOST_KEYS} keys more"] if len(axes) > _MOST_KEYS else []
-    cells = [
-        [f"{title}: {text(value, unit)}" if value == value else "" for value in values.tolist()]
-        for title, (unit, values) in (
-            (shortened(visible(title), 60), result) for title, result in results.items()
-        )
-    ]
+    more = []
+    if len(axes) > _MOST_KEYS:
+        more = [f"and {len(axes) - _MOST_KEYS} keys more"]
+    cells = [_result_lines(title, unit, values) for title, (unit, values) in results.items()]
     if impacts is None:
         heads = [""] * len(numbers)
     else:
@@ -187,6 +184,12 @@ def drop_texts(
         ]
         texts.append("\n".join([line for line in lines if line] + [run_command(number)]))
     return tuple(texts)
+
+
+def _result_lines(title: str, unit: str, values: Floats) -> list[str]:
+    """Return the line that tells a result of each drop; empty for NaN."""
+    name = shortened(visible(title), 60)
+    return [f"{name}: {text(value, unit)}" if value == value else "" for value in values.tolist()]
 
 
 def run_command(number: int) -> str:
@@ -204,13 +207,10 @@ def values_at(study: Study, axis: StudyAxis, numbers: Indices) -> NDArray[Any]:
     """Return the values of a swept key in drops, by their numbers."""
     if not study.is_grid:
         return axis.values[numbers]
-    return np.asarray(
-        axis.values[
-            np.unravel_index(numbers, tuple(study.dimensions.values()))[
-                list(study.dimensions).index(axis.key)
-            ]
-        ]
-    )
+    lengths = tuple(study.dimensions.values())
+    dimension = list(study.dimensions).index(axis.key)
+    levels = np.unravel_index(numbers, lengths)[dimension]
+    return np.asarray(axis.values[levels])
 
 
 def _told(axis: StudyAxis, values: NDArray[Any]) -> list[str]:
@@ -222,7 +222,9 @@ def _told(axis: StudyAxis, values: NDArray[Any]) -> list[str]:
 def _key_label(axis: StudyAxis) -> str:
     """Return the label of a key, with the unit of the scale of colours."""
     label = shortened(visible(sentence(axis.words)), 60)
-    return with_unit(label, multiple(axis.unit, axis.values).unit) if axis.numeric else label
+    if not axis.numeric:
+        return label
+    return with_unit(label, multiple(axis.unit, axis.values).unit)
 
 
 def _key_values(axis: StudyAxis, values: NDArray[Any]) -> NDArray[Any]:

@@ -68,16 +68,19 @@ def outputs_chart(study: Study, outputs: list[Output]) -> Chart:
 
 
 def _of_what(study: Study) -> str:
-    return (
-        " in the blocks A and B, whose drops are independent" if study.design == "saltelli" else ""
-    )
+    if study.design != "saltelli":
+        return ""
+    return " in the blocks A and B, whose drops are independent"
 
 
 def _histogram(values: Floats, *, log: bool) -> Bars:
+    # Rice's rule: twice the cube root of the number of values
     number = int(np.clip(2.0 * np.cbrt(len(values)), 8, _MOST_BINS))
     low = float(values.min())
     high = float(values.max())
-    spaced = np.geomspace if log and low > 0.0 else np.linspace
-    edges = np.unique(spaced(low, high, number + 1))
+    edges = np.linspace(low, high, number + 1)
+    if log and low > 0.0:
+        edges = np.geomspace(low, high, number + 1)
+    edges = np.unique(edges)  # fewer where all values are about the same
     counts, _ = np.histogram(values, edges)
     return Bars(edges, counts.astype(float), role="pale")

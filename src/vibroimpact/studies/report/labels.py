@@ -21,7 +21,9 @@ BAND = f"{PERCENTILES[0]} to {PERCENTILES[-1]} %"
 
 def value_text(axis: StudyAxis, value: Any) -> str:
     """Return one value of an axis as text."""
-    return text(float(value), axis.unit) if axis.numeric else shortened(visible(str(value)), 60)
+    if axis.numeric:
+        return text(float(value), axis.unit)
+    return shortened(visible(str(value)), 60)
 
 
 def level_words(axis: StudyAxis, level: int) -> str:
@@ -51,7 +53,9 @@ def keys_told(axes: Sequence[StudyAxis]) -> str:
     """
     # the class is a label, and no key
     keys = [shortened(visible(axis.key), 60) for axis in axes if axis.key != CLASS]
-    return f"In the case: {', '.join(keys)}." if keys else ""
+    if not keys:
+        return ""
+    return f"In the case: {', '.join(keys)}."
 
 
 def range_text(axis: StudyAxis) -> str:
@@ -60,8 +64,10 @@ def range_text(axis: StudyAxis) -> str:
         return f"{value_text(axis, axis.values[0])} alone"
     if not axis.numeric:
         names = list(dict.fromkeys(axis.values))
-        more = f", and {len(names) - 6} more" if len(names) > 6 else ""
-        return ", ".join(shortened(visible(str(name)), 40) for name in names[:6]) + more
+        phrases = [shortened(visible(str(name)), 40) for name in names[:6]]
+        if len(names) > 6:
+            phrases.append(f"and {len(names) - 6} more")
+        return ", ".join(phrases)
     low = float(np.min(axis.values))
     high = float(np.max(axis.values))
     scale = multiple(axis.unit, [low, high])
@@ -78,7 +84,7 @@ def drops_text(number: int) -> str:
     >>> drops_text(1), drops_text(12)
     ('1 drop', '12 drops')
     """
-    return f"{number} drop{'' if number == 1 else 's'}"
+    return "1 drop" if number == 1 else f"{number} drops"
 
 
 def percent(part: float) -> str:

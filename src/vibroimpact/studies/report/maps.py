@@ -43,20 +43,17 @@ def maps_chart(
     y = key_axis(up)
     texts: tuple[str, ...] = ()
     if len(axes) == 2 and study.size <= _MOST_TOLD:
-        drop_descriptions = np.array(
+        descriptions = np.array(
             drop_texts(study, results_of(study, outputs), drop_numbers(study)), dtype=object
         )
-        drop_descriptions = drop_descriptions.reshape([len(axis.values) for axis in axes])
-        texts = tuple(
-            (drop_descriptions.T if axes[0] is across else drop_descriptions)[
-                np.ix_(rows, columns)
-            ].ravel()
-        )
+        descriptions = descriptions.reshape([len(axis.values) for axis in axes])
+        if axes[0] is across:
+            descriptions = descriptions.T
+        texts = tuple(descriptions[np.ix_(rows, columns)].ravel())
     panels = []
     for output in outputs:
-        values = on_two_axes(study, output.name, axes.index(up), axes.index(across))[
-            np.ix_(rows, columns)
-        ]
+        values = on_two_axes(study, output.name, axes.index(up), axes.index(across))
+        values = values[np.ix_(rows, columns)]
         scale = result_axis(output, output.short)
         cells = Map(
             places(across, across.values[columns]),

@@ -78,9 +78,10 @@ def study_outputs(study: Study) -> list[Output]:
     for name in output_names(study):
         if name in PEAK_TABLE:
             title = PEAK_TABLE[name].title
+            short = PEAK_TABLE[name].short
         else:
             title = f"Largest reading of {name.removesuffix(SENSOR_PEAK)}"
-        short = PEAK_TABLE[name].short if name in PEAK_TABLE else title
+            short = title
         outputs.append(
             Output(
                 name,
@@ -119,8 +120,9 @@ def independent_values(study: Study, name: str) -> NDArray[Any]:
 
 def on_grid(study: Study, name: str) -> NDArray[Any]:
     """Return a result on the grid, without axes of a single level; NaN for failed drops."""
-    levels = (length for length in study.dimensions.values() if length > 1)
-    return read_output(study, name).reshape(*levels, *study.shapes[name][len(study.dimensions) :])
+    levels = [length for length in study.dimensions.values() if length > 1]
+    shape_of_drop = study.shapes[name][len(study.dimensions) :]
+    return read_output(study, name).reshape(*levels, *shape_of_drop)
 
 
 def on_two_axes(study: Study, name: str, first: int, second: int) -> Floats:
@@ -143,8 +145,11 @@ def on_two_axes(study: Study, name: str, first: int, second: int) -> Floats:
     for place in np.ndindex(*medians.shape):
         here = flat[place]
         here = here[np.isfinite(here)]
-        if len(here):
-            medians[place] = here[0] if len(here) == 1 else np.median(here)
+        if len(here) == 1:
+            # of two axes alone there are many places, each with one drop
+            medians[place] = here[0]
+        elif len(here):
+            medians[place] = np.median(here)
     return medians
 
 
@@ -157,7 +162,9 @@ def sampled_places(study: Study, most: int) -> tuple[slice, ...]:
     """
     if study.design not in ("grid", "zip"):
         number = independent_drops(study)
-        return (slice(0, number if number <= most else _at_most(most, study.design)),)
+        if number > most:
+            number = _at_most(most, study.design)
+        return (slice(0, number),)
     lengths = list(study.dimensions.values())
     steps = [1] * len(lengths)
     while (
@@ -208,4 +215,6 @@ def _at_most(most: int, design: str) -> int:
     """Return the number of leading drops to take: a power of two for a Sobol sequence,
     which is balanced then.
     """
-    return most if design == "latin-hypercube" else 1 << (most.bit_length() - 1)
+    if design == "latin-hypercube":
+        return most
+    return 1 << (most.bit_length() - 1)

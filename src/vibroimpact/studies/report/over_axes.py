@@ -103,29 +103,30 @@ def _in_bins(where: Floats, values: Floats, axis: StudyAxis) -> tuple[Floats, Fl
     """
     distinct = np.unique(where)
     if not axis.numeric or len(distinct) <= _BINS:  # a list of values: a bin would mix them
-        return distinct, np.array(
-            [np.quantile(values[where == place], _PARTS) for place in distinct]
-        )
+        at_places = [np.quantile(values[where == place], _PARTS) for place in distinct]
+        return distinct, np.array(at_places)
     order = np.argsort(where, kind="stable")
-    groups = [
-        group for group in np.array_split(order, min(_BINS, len(order) // _FULL)) if len(group)
-    ]
+    bin_count = min(_BINS, len(order) // _FULL)
+    groups = [group for group in np.array_split(order, bin_count) if len(group)]
     middles = np.array([float(np.median(where[group])) for group in groups])
     return middles, np.array([np.quantile(values[group], _PARTS) for group in groups])
 
 
 def _caption(study: Study, axes: list[StudyAxis]) -> str:
     number = len(drop_numbers(study, *sampled_places(study, MOST_DROPS)))
-    some = f"{number} of the drops" if number < independent_drops(study) else "All drops"
-    blocks = " of the blocks A and B" if study.design == "saltelli" else ""
-    of_what = (
-        "of drops with the same value, or of drops next to each other where a key has more "
-        f"than {_BINS} numbers"
-    )
-    band = (
-        f"; the line and the band are the median and {BAND} {of_what}" if _has_band(study) else ""
-    )
-    first = (
-        f" Drawn are the first {MOST_AXES} of {len(axes)} keys." if len(axes) > MOST_AXES else ""
-    )
+    some = "All drops"
+    if number < independent_drops(study):
+        some = f"{number} of the drops"
+    blocks = ""
+    if study.design == "saltelli":
+        blocks = " of the blocks A and B"
+    band = ""
+    if _has_band(study):
+        band = (
+            f"; the line and the band are the median and {BAND} of drops with the same value, or "
+            f"of drops next to each other where a key has more than {_BINS} numbers"
+        )
+    first = ""
+    if len(axes) > MOST_AXES:
+        first = f" Drawn are the first {MOST_AXES} of {len(axes)} keys."
     return f"{some}{blocks}, over each key{band}.{first} {keys_told(axes[:MOST_AXES])}"

@@ -65,5 +65,7 @@ def spread_of(values: Floats) -> Spread:
     mean = float(finite.mean())
     percentiles = tuple(np.percentile(finite, PERCENTILES, overwrite_input=True).tolist())
     finite -= mean
-    deviation = math.sqrt(float(finite @ finite) / (drops - 1)) if drops > 1 else math.nan
+    deviation = math.nan
+    if drops > 1:
+        deviation = math.sqrt(float(finite @ finite) / (drops - 1))
     return Spread(drops, mean, deviation, percentiles)

@@ -112,7 +112,9 @@ def _sections(
         if influence is not None:
             sections.append(influence)
     # why there is no sensitivity is told all the same
-    notes = [] if sensitivity is None else [Note(note) for note in sensitivity.notes]
+    notes = []
+    if sensitivity is not None:
+        notes = [Note(note) for note in sensitivity.notes]
     if study.design == "zip":
         notes.append(
             Note("The keys of a zip change together, so that their effects can't be separated.")
@@ -133,7 +135,9 @@ def _failures_section(study: Study) -> Section:
     table = failures_table(study)
     shown = len(table.columns[0].cells)
     failed = len(study.failures)
-    which = f"The first {shown} of {failed}; drops" if shown < failed else "Drops"
+    which = "Drops"
+    if shown < failed:
+        which = f"The first {shown} of {failed}; drops"
     numbering = f"{which} are numbered from 0, as in drops.csv. All reasons are in study.nc."
     blocks: list[Block] = [Paragraph(reason) for reason in reason_sentences(study)]
     blocks += [table, Note(numbering)]
@@ -203,13 +207,16 @@ def study_document(
     """Return the outcome of a study: the rows of `percentiles.csv` and `sensitivity.csv`,
     failures, exceeded limits and doubts.
     """
+    rows = []
+    if sensitivity is not None:
+        rows = sensitivity_rows(sensitivity)
     return {
         "name": study.name,
         "version": study.version,
         "study": {"design": study.design, "drops": study.size, "failed": len(study.failures)},
         "reasons": [{"drops": number, "reason": reason} for number, reason in reasons(study)],
         "percentiles": percentiles_rows(outputs),
-        "sensitivity": [] if sensitivity is None else sensitivity_rows(sensitivity),
+        "sensitivity": rows,
         "limits": [limit._asdict() for limit in study.doubts],
         "doubts": doubt_sentences(study),
     }

@@ -130,11 +130,13 @@ def _groups(study: Study, impacts: _Impacts) -> list[Group]:
         "Approach speed": ("m/s", impacts.speed),
     }
     axes = [axis for axis in study_axes(study) if axis.varies]
+    drops = impacts.drop
     if impacts.impact.max() == 1:
-        return grouped(study, axes, impacts.drop, drop_texts(study, quantities, impacts.drop), {})
-    texts = drop_texts(study, quantities, impacts.drop, impacts.impact)
-    names = np.array([f"impact {number}" for number in impacts.impact.tolist()], dtype=object)
-    return grouped(study, axes, impacts.drop, texts, {"Impact": names})
+        return grouped(study, axes, drops, drop_texts(study, quantities, drops), {})
+    texts = drop_texts(study, quantities, drops, impacts.impact)
+    names = [f"impact {number}" for number in impacts.impact.tolist()]
+    others = {"Impact": np.array(names, dtype=object)}
+    return grouped(study, axes, drops, texts, others)
 
 
 def _panels(impacts: _Impacts, groups: list[Group]) -> list[Panel]:
@@ -149,9 +151,9 @@ def _panels(impacts: _Impacts, groups: list[Group]) -> list[Panel]:
             *_points(groups, impacts.speed, impacts.achieved),
         )
         return [Panel(speed, achieved, over_speed)]
-    ends = np.array(
-        [min(least, float(impacts.achieved.min())), max(largest, float(impacts.achieved.max()))]
-    )
+    lowest = min(least, float(impacts.achieved.min()))
+    highest = max(largest, float(impacts.achieved.max()))
+    ends = np.array([lowest, highest])
     over_asked: tuple[Mark, ...] = (
         Line(ends, ends, "as asked", "reference"),
         *_points(groups, impacts.asked, impacts.achieved),
@@ -197,14 +199,16 @@ def _impacts(study: Study) -> _Impacts:
     if names[0] not in study.shapes:
         return _Impacts(np.empty(0, np.intp), np.empty(0, np.intp), *np.empty((3, 0)))
     drops = drop_numbers(study, *sampled_places(study, _MOST // each))
-    columns = [
-        sampled_output(study, name, _MOST // each).reshape(len(drops), -1)[:, :each].ravel()
-        for name in names
-    ]
+    columns = []
+    for name in names:
+        values = sampled_output(study, name, _MOST // each)
+        columns.append(values.reshape(len(drops), -1)[:, :each].ravel())
     with_both = np.isfinite(columns[0]) & np.isfinite(columns[1])
+    drop = np.repeat(drops, each)
+    impact = np.tile(np.arange(1, each + 1), len(drops))
     return _Impacts(
-        np.repeat(drops, each)[with_both],
-        np.tile(np.arange(1, each + 1), len(drops))[with_both],
+        drop[with_both],
+        impact[with_both],
         *(column[with_both] for column in columns),
     )
 

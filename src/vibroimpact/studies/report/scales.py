@@ -37,27 +37,24 @@ def key_axis(axis: StudyAxis) -> Axis:
     """
     label = shortened(visible(sentence(axis.words)), 60)
     if axis.numeric:
-        return Axis(
-            label, "" if axis.unit == "1" else axis.unit, log=is_spread_by_factors(axis.values)
-        )
+        return Axis(label, _shown_unit(axis.unit), log=is_spread_by_factors(axis.values))
     names = names_of(axis)
     step = math.ceil(len(names) / _MOST_NAMES)
-    return Axis(
-        label,
-        names=tuple(
-            "" if place % step else shortened(visible(name), _LONGEST)
-            for place, name in enumerate(names)
-        ),
-    )
+    written = [""] * len(names)
+    written[::step] = [shortened(visible(name), _LONGEST) for name in names[::step]]
+    return Axis(label, names=tuple(written))
+
+
+def _shown_unit(unit: str) -> str:
+    """Return a unit as an axis has it: none for a pure number."""
+    return "" if unit == "1" else unit
 
 
 def result_axis(output: Output, label: str) -> Axis:
     """Return the axis of a chart for a result, with a label: its title, its short one, or
     none where a panel has the title.
     """
-    return Axis(
-        shortened(visible(label), 60), "" if output.unit == "1" else output.unit, log=is_log(output)
-    )
+    return Axis(shortened(visible(label), 60), _shown_unit(output.unit), log=is_log(output))
 
 
 def is_log(output: Output) -> bool:
@@ -98,7 +95,9 @@ def ascending_order(axis: StudyAxis, most: int | None = None) -> Indices:
     ([1, 2, 0], [1, 0])
     """
     order = np.argsort(places(axis, axis.values), kind="stable")
-    return order if most is None else order[:: math.ceil(len(order) / most)]
+    if most is None:
+        return order
+    return order[:: math.ceil(len(order) / most)]
 
 
 def is_spread_by_factors(values: NDArray[Any]) -> bool:
@@ -128,8 +127,6 @@ def is_spread_by_factors(values: NDArray[Any]) -> bool:
 
 def _off_a_line(values: Floats) -> float:
     """Return the largest deviation of sorted values from equal steps, relative to their range."""
-    return float(
-        np.abs(
-            (values - values[0]) / (values[-1] - values[0]) - np.linspace(0.0, 1.0, len(values))
-        ).max()
-    )
+    relative = (values - values[0]) / (values[-1] - values[0])
+    equal_steps = np.linspace(0.0, 1.0, len(values))
+    return float(np.abs(relative - equal_steps).max())

@@ -213,8 +213,9 @@ def one_at_a_time(values: NDArray[Any], orders: list[Indices]) -> OneAtATime:
     lowest = np.full(len(orders), math.nan)
     highest = np.full(len(orders), math.nan)
     for axis in range(len(orders)):
-        through_middle: tuple[Any, ...] = (*middle[:axis], slice(None), *middle[axis + 1 :])
-        along_axis = np.asarray(values[through_middle], dtype=np.float64)
+        through_middle: list[Any] = list(middle)
+        through_middle[axis] = slice(None)
+        along_axis = np.asarray(values[tuple(through_middle)], dtype=np.float64)
         if np.isfinite(along_axis).any():
             lowest[axis] = np.nanmin(along_axis)
             highest[axis] = np.nanmax(along_axis)

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from vibroimpact.arrays import Indices
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Bars, Level, Mark
@@ -60,13 +60,13 @@ def sensitivity_chart(
     keys = [axes[sensitivity.keys[key]] for key in order]
     names = tuple(shortened(visible(sentence(axis.words)), 60) for axis in keys)
     panels = []
-    common = Axis(
-        *_LABELS[sensitivity.way], range=(-1.05, 1.05) if sensitivity.way == RANKS else None
-    )
+    limits = (-1.05, 1.05) if sensitivity.way == RANKS else None
+    across = Axis(*_LABELS[sensitivity.way], range=limits)
     up = Axis(names=tuple(shortened(name, _LETTERS) for name in names))
     for output in shown:
-        # ranges may differ widely between results
-        across = Axis(*_LABELS[RANGES]) if sensitivity.way == RANGES else common
+        if sensitivity.way == RANGES:
+            # an axis of its own, as ranges may differ widely between results
+            across = Axis(*_LABELS[RANGES])
         marks = (*_bars(sensitivity, output, order, names), Level(0.0, role="main", upright=True))
         panels.append(Panel(across, up, marks, shortened(visible(output.short), 40)))
     cut = ""
@@ -105,12 +105,17 @@ def _bars(
     if sensitivity.way == RANKS:
         return (lying(places, np.nan_to_num(row["rank_correlation"][order])),)
     middle = row["at_the_middle"][order]
-    moved = [np.nan_to_num(row[name][order] - middle) for name in ("lowest", "highest")]
-    # a result that is zero at the middle has no relative range
-    low, high = (
-        100.0 * np.divide(bound, np.abs(middle), out=np.zeros(len(order)), where=middle != 0.0)
-        for bound in moved
+    high = _percent_off(row["highest"][order], middle)
+    low = _percent_off(row["lowest"][order], middle)
+    return (
+        lying(places, high, "up to the highest", "detail"),
+        lying(places, low, "down to the lowest", "lower"),
     )
-    return lying(places, high, "up to the highest", "detail"), lying(
-        places, low, "down to the lowest", "lower"
-    )
+
+
+def _percent_off(values: Floats, middle: Floats) -> Floats:
+    """Return how far values are from those at the middle [%]; 0 where these are zero."""
+    difference = np.nan_to_num(values - middle)
+    relative = np.zeros(len(middle))
+    np.divide(difference, np.abs(middle), out=relative, where=middle != 0.0)
+    return 100.0 * relative

@@ -81,7 +81,9 @@ def _strongest_keys(
     if not sensitivities:
         return []
     has_names = any(not axis.numeric for axis in study_axes(study))
-    of_numbers = ", of numeric keys," if sensitivities[0].way == RANKS and has_names else ""
+    of_numbers = ""
+    if sensitivities[0].way == RANKS and has_names:  # names have no ranks
+        of_numbers = ", of numeric keys,"
     cells = [
         "".join(_strongest_key(known, output.name) for known in sensitivities) for output in outputs
     ]
@@ -100,4 +102,5 @@ def _strongest_key(sensitivity: Sensitivity, output: str) -> str:
         correlation = float(sensitivity.rows[output]["rank_correlation"][number])
         return f"{key} (rank correlation {digits(correlation, 2)})"
     measure = "index" if sensitivity.way == SOBOL else "range"
-    return f"{key} ({measure} {percent(float(sensitivity.strength[output][number]))})"
+    strength = float(sensitivity.strength[output][number])
+    return f"{key} ({measure} {percent(strength)})"

@@ -64,7 +64,9 @@ def _signal_chart(study: Study, sensor: str, name: str) -> Chart | None:
     if not len(signals) or not np.abs(signals).max() > 0.0:
         return None
     times = study.times(sensor)
-    step = float(times[1] - times[0]) if len(times) > 1 else 1.0
+    step = 1.0
+    if len(times) > 1:
+        step = float(times[1] - times[0])
     before = float(min(touch.min(), _BEFORE * (times[-1] - touch.min())))
     label = "Time since first touch" if touch.any() else "Time"
     unit, meaning = study.meanings[variable]
@@ -112,12 +114,15 @@ def _band(signals: Floats, touch: Floats, step: float, before: float) -> Iterato
     # numbers of samples: of the first touch of each drop, and shown ahead of it
     touches = np.round(touch / step).astype(int)
     ahead = round(before / step)
-    aligned = _aligned(signals, touches - ahead, ahead + signals.shape[1] - int(np.median(touches)))
-    spans = np.array_split(np.arange(aligned.shape[1]), min(_COLUMNS, aligned.shape[1]))
+    # as long as half of the drops have readings
+    samples = ahead + signals.shape[1] - int(np.median(touches))
+    aligned = _aligned(signals, touches - ahead, samples)
+    spans = np.array_split(np.arange(samples), min(_COLUMNS, samples))
     percentiles = []
     for span in spans:
         readings = aligned[:, span].ravel()
-        percentiles.append(np.percentile(readings[np.isfinite(readings)], (0, 5, 50, 95, 100)))
+        readings = readings[np.isfinite(readings)]
+        percentiles.append(np.percentile(readings, (0, 5, 50, 95, 100)))
     least, low, median, high, most = np.array(percentiles).T
     time = step * np.array([span.mean() - ahead for span in spans])
     yield Band(time, least, most, "all", "band")
@@ -141,10 +146,13 @@ def _single(
     the largest below the others.
     """
     by_peak = np.argsort(-np.abs(signals).max(axis=1), kind="stable")
-    chosen = dict.fromkeys(by_peak[np.linspace(0, len(by_peak) - 1, _FEW).astype(int)].tolist())
+    ranks = np.linspace(0, len(by_peak) - 1, _FEW).astype(int)
+    chosen = dict.fromkeys(by_peak[ranks].tolist())
     peaks = {}
     if len(chosen) > 1:
-        peaks = {int(by_peak[0]): ", largest peak", int(by_peak[-1]): ", smallest peak"}
+        largest = int(by_peak[0])
+        smallest = int(by_peak[-1])
+        peaks = {largest: ", largest peak", smallest: ", smallest peak"}
     for number, drop in enumerate(chosen):
         since_touch = times - touch[drop]
         start = int(np.searchsorted(since_touch, -before))

@@ -106,7 +106,9 @@ def _pairs(study: Study, numbers: Indices) -> _Pairs:
     ]
     keys = [axis.key for axis in axes]
     columns = [values_at(study, axis, numbers).tolist() for axis in axes]
-    rows = list(zip(*columns, strict=True)) if columns else [()] * len(numbers)
+    rows: list[tuple[Any, ...]] = [()] * len(numbers)
+    if columns:
+        rows = list(zip(*columns, strict=True))
     contacts = {
         row: _contact_at(study, dict(zip(keys, row, strict=True))) for row in dict.fromkeys(rows)
     }

@@ -50,17 +50,20 @@ def counts_sentence(study: Study) -> str:
     drops = drops_text(study.size)
     if not failed:
         return f"{drops}; none failed."
+    if failed == study.size == 1:
+        return f"{drops}; it failed."
     if failed == study.size:
-        return f"{drops}; all of them failed." if failed > 1 else f"{drops}; it failed."
+        return f"{drops}; all of them failed."
     return f"{drops}; {failed} failed ({percent(failed / study.size)})."
 
 
 def reason_sentences(study: Study) -> list[str]:
     """Return the most frequent reasons of failure, each with its number of drops."""
-    return [
-        f"{drops_text(number)}{', such as' if number > 1 else ''}: {reason}"
-        for number, reason in reasons(study)
-    ]
+    sentences = []
+    for number, reason in reasons(study):
+        such_as = ", such as" if number > 1 else ""
+        sentences.append(f"{drops_text(number)}{such_as}: {reason}")
+    return sentences
 
 
 def reasons(study: Study) -> list[tuple[int, str]]:
@@ -117,7 +120,9 @@ def _doubt_sentence(study: Study, doubt: StudyDoubt) -> str:
     axes = study_axes(study)
     point = zip(axes, point_of(study, axes, doubt.worst), strict=True)
     keys = [f"{axis.key} {value_text(axis, value)}" for axis, value in point if axis.varies]
-    values = f" ({', '.join(keys[:_WORST_KEYS])})" if keys else ""
+    values = ""
+    if keys:
+        values = f" ({', '.join(keys[:_WORST_KEYS])})"
     return (
         f"{title}: {doubt.drops:,} of {study.size:,} drops, worst {worst} at drop "
         f"{doubt.worst}{values}"
@@ -128,8 +133,10 @@ def axes_table(study: Study, axes: list[StudyAxis]) -> list[tuple[str, str, str]
     """Return the table of the swept keys: key, what it is, and range."""
     rows = []
     for axis in axes:
-        levels = f"{len(axis.values)} levels, " if study.is_grid and axis.varies else ""
-        rows.append((axis.key, axis.words, levels + range_text(axis)))
+        values = range_text(axis)
+        if study.is_grid and axis.varies:
+            values = f"{len(axis.values)} levels, {values}"
+        rows.append((axis.key, axis.words, values))
     return rows
 
 
@@ -152,8 +159,10 @@ def _statistics_row(output: Output) -> list[str]:
     percentiles = [digits(value / size) for value in spread.percentiles]
     if output.name == _COUNT:
         percentiles = [f"{value:g}" for value in spread.percentiles]
-    # the deviation of equal values is rounding
-    deviation = spread.standard_deviation if spread.varies or spread.drops < 2 else 0.0
+    deviation = spread.standard_deviation
+    if spread.drops > 1 and not spread.varies:
+        # of equal values it is rounding
+        deviation = 0.0
     return [
         output.title,
         output.scale.unit,
@@ -247,8 +256,9 @@ def sensitivity_rows(sensitivity: Sensitivity) -> list[dict[str, Any]]:
         for number, key in enumerate(sensitivity.keys):
             row: dict[str, Any] = {"output": output, "key": key}
             for name, values in columns.items():
-                value = float(values[number])
-                row[name] = int(value) if name in _COUNTS else _finite(value)
+                row[name] = _finite(float(values[number]))
+                if name in _COUNTS:
+                    row[name] = int(values[number])
             rows.append(row)
     return rows
 
@@ -298,7 +308,9 @@ def _percent(fraction: float) -> str:
 
 def spread_words(study: Study) -> str:
     """Return the explanation of the table of percentiles."""
-    failed = " Drops that failed are left out." if study.failures else ""
+    failed = ""
+    if study.failures:
+        failed = " Drops that failed are left out."
     explanations = {
         "grid": "These percentiles describe the grid; its levels were chosen, so that they are not "
         "probabilities.",
