@@ -168,7 +168,9 @@ def why_not_compiled() -> str:
     except Exception as error:
         # ImportError where NumPy is too new for it, OSError where a library of it cannot be loaded
         return f"numba cannot be loaded: {error}"
-    return "switched off in the configuration of numba" if numba.config.DISABLE_JIT else ""
+    if numba.config.DISABLE_JIT:
+        return "switched off in the configuration of numba"
+    return ""
 
 
 def _why_switched_off() -> str:

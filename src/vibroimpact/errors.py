@@ -97,7 +97,10 @@ class InputError(VibroimpactError, ValueError):
     """
 
     def __init__(self, message: str, key: str = "") -> None:
-        super().__init__(f"{shortened(key, 160)}: {message}" if key else message)
+        with_key = message
+        if key:
+            with_key = f"{shortened(key, 160)}: {message}"
+        super().__init__(with_key)
         (self.message,) = lines_of([message])
         self.key = key
 

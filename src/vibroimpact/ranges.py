@@ -95,5 +95,7 @@ class Range:
         )
         if not inside.all():
             invalid = shown or f"{array[~inside].flat[0]:g}"
-            allowed = f"{self.words} {unit}".rstrip() if self.words else "finite"
+            allowed = "finite"
+            if self.words:
+                allowed = f"{self.words} {unit}".rstrip()
             raise InputError(f"{invalid} is not allowed; it must be {allowed}")
