@@ -195,9 +195,7 @@ def _offset_doubt(record: Record, removed: Removed, largest: float, peak: float)
         up_to = "up to "
     share = "all that there is"
     if peak:
-        share = (
-            f"{up_to}{largest / peak:.2g} times the largest magnitude of the rest of the record"
-        )
+        share = f"{up_to}{largest / peak:.2g} times the largest magnitude of the rest of the record"
     return (
         f"an offset of {removed.offset:.4g}{unit}{drift} was removed from "
         f"{quoted(record.name)}, {share}: check that the channel rests at zero, and that it is "
