@@ -37,8 +37,8 @@ def answer_of(result: Result) -> list[Quantity]:
     --------
     >>> import vibroimpact as vi
     >>> result = vi.result_of(vi.simulate(vi.load_case("paper:type1-theory")))
-    >>> [(quantity.name, quantity.value) for quantity in answer_of(result)][:2]
-    [('Largest force', 10239.17754256...), ('Contact time', 0.000269702...)]
+    >>> [(quantity.name, quantity.error_text) for quantity in answer_of(result)][:2]
+    [('Largest force', '± 9.7 %'), ('Contact time', '± 8.5 %')]
     """
     return [*answer_of_impacts(result), *_of_sensors(result)]
 

@@ -238,7 +238,7 @@ def test_the_command_tells_what_it_removed(
     assert [float(row["drift"]) for row in rows] == [0.0, 0.0, 0.0]
     assert "offset removed" in out
     # a twentieth of the peak is no doubt, a fifth is
-    assert err.count("doubt:") == 1
+    assert err.count("warning:") == 1
     assert (
         'an offset of -20 m/s2 was removed from "c", 0.21 times the largest magnitude of '
         "what is left" in " ".join(err.split())
@@ -247,7 +247,7 @@ def test_the_command_tells_what_it_removed(
     assert shown[0]["offset"] == pytest.approx(5.0, abs=1e-3)
     many = {f"x{number} [m/s^2]": bouncing() + 50.0 for number in range(12)}
     _, _, err = command("features", written(tmp_path / "many.csv", **many), "--only", "packets")
-    assert err.count("doubt:") == 11
+    assert err.count("warning:") == 11
     assert "there are 2 further doubts" in err
 
 
