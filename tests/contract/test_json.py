@@ -252,6 +252,8 @@ def as_text(value: Any) -> Any:
 def test_a_calibration_is_its_file_and_its_comparison(printed: Printed) -> None:
     document = printed("calibrate", "paper:calibration", "-o", "out")
     assert document.pop("folder") == "out"
+    answer = document.pop("answer")
+    assert [row["value"] for row in answer] == [row["value"] for row in document["matched"]]
     assert in_all_columns(document.pop("comparison")) == rows("out", "comparison.csv")
     assert document == summary("out", "calibration.json")
     assert in_all_columns(document["matched"]) == rows("out", "matched.csv")

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import tomli_w
 
 from vibroimpact._version import __version__
+from vibroimpact.arrays import Floats
 from vibroimpact.calibration.charts import calibration_charts
 from vibroimpact.calibration.contact_law.adams_dialog import (
     calibrated_dialog,
@@ -44,8 +47,11 @@ from vibroimpact.calibration.friction.friction_report import (
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.files.check_sums import CHECK_SUMS, digests_of, sealed
 from vibroimpact.files.result_folder import CASE, write_case
-from vibroimpact.report.report import Block, Code, Explanation, Note, Report, Section
+from vibroimpact.report.report import Block, Code, Explanation, Note, Quantity, Report, Section
 from vibroimpact.results.csv_files import write_csv
+
+_MOST_VALUES = 6
+"""Values of a parameter that the answer states; a table below has all."""
 
 
 def report_of(calibration: Calibration | FrictionCalibration) -> Report:
@@ -84,11 +90,59 @@ def _law_report(calibration: Calibration) -> Report:
         answer=function_words(calibration),
         matched=f"With {calibration.problem.laws[0].name}, {match_words(calibration)}.",
         sentences=[*given_sentences(calibration), *fit_sentences(calibration)],
+        quantities=_law_quantities(calibration),
         sections=sections,
         parameter=calibration.parameter,
         document=document,
         tables={"matched": document["matched"], "comparison": comparison},
     )
+
+
+def _law_quantities(calibration: Calibration) -> list[Quantity]:
+    """Return the values to type: one for every impact, or one for each of the first ones."""
+    values = calibration.values
+    notes = list(calibration.observations.labels)
+    number = min(len(values), _MOST_VALUES)
+    if np.ptp(values) == 0.0:
+        notes = ["for every impact"]
+        number = 1
+    dialog = calibrated_dialog(calibration)
+    if len(dialog) >= number and calibration.parameter == "damping_max":
+        notes = [
+            f"{note}; {row['damping_N_s_mm']:.4g} N s/mm in Adams' dialog"
+            for note, row in zip(notes, dialog, strict=False)
+        ]
+    return [
+        Quantity(
+            calibration.parameter,
+            float(values[impact]),
+            calibration.unit,
+            _relative_error(values, calibration.intervals, impact),
+            notes[impact],
+        )
+        for impact in range(number)
+    ]
+
+
+def _friction_quantities(calibration: FrictionCalibration) -> list[Quantity]:
+    """Return the values of friction to type."""
+    return [
+        Quantity(
+            name,
+            float(calibration.values[number]),
+            calibration.parameters.units[number],
+            _relative_error(calibration.values, calibration.intervals, number),
+        )
+        for number, name in enumerate(calibration.names)
+    ]
+
+
+def _relative_error(values: Floats, intervals: Floats | None, number: int) -> float:
+    """Return half the interval of a value over it; NaN if it has none that is bounded."""
+    if intervals is None or not values[number]:
+        return math.nan
+    half = 0.5 * float(np.ptp(intervals[number])) / abs(float(values[number]))
+    return half if math.isfinite(half) else math.nan
 
 
 def _friction_report(calibration: FrictionCalibration) -> Report:
@@ -101,6 +155,7 @@ def _friction_report(calibration: FrictionCalibration) -> Report:
         answer=friction_words(calibration),
         matched=f"With friction by {law}, {together_words(calibration)}.",
         sentences=[*given_values_sentences(calibration), *friction_sentences(calibration)],
+        quantities=_friction_quantities(calibration),
         sections=[impacts],
         parameter=", ".join(calibration.names),
         document=document,
@@ -114,6 +169,7 @@ def _report(
     answer: str,
     matched: str,
     sentences: Sequence[str],
+    quantities: Sequence[Quantity],
     sections: Sequence[Section],
     parameter: str,
     document: Mapping[str, Any],
@@ -136,6 +192,7 @@ def _report(
     return Report(
         title=f"{title[:1].upper()}{title[1:]}, calibrated",
         answer=answer,
+        quantities=quantities,
         sentences=[matched, *sentences],
         sections=sections,
         charts=calibration_charts(calibration),

@@ -58,7 +58,6 @@ def terminal_report(report: Report) -> RenderableType:
     lines: list[RenderableType] = [Text(report.title, style="bold")]
     if report.answer:
         lines.append(Text(report.answer))
-    lines.extend(Text(sentence) for sentence in report.sentences)
     if report.quantities:
         lines.append(facts([_quantity_cells(row) for row in report.quantities], indent=1))
     warnings = report.all_warnings
@@ -66,6 +65,7 @@ def terminal_report(report: Report) -> RenderableType:
         # beside the answer, the worst one; the others follow at the end
         lines.extend(warning_lines(warnings[:1]))
         warnings = warnings[1:]
+    lines.extend(Text(sentence) for sentence in report.sentences)
     sections = [section for section in report.sections if section.medium != "page"]
     shown = [(section, blocks) for section in sections if (blocks := list(_section_lines(section)))]
     for number, (section, blocks) in enumerate(shown):

@@ -241,14 +241,14 @@ def test_the_command_tells_what_it_removed(
     assert err.count("warning:") == 1
     assert (
         'an offset of -20 m/s2 was removed from "c", 0.21 times the largest magnitude of '
-        "what is left" in " ".join(err.split())
+        "the rest of the record" in " ".join(err.split())
     )
     shown = json.loads(command("features", table, "--only", "packets", "--json")[1])["signals"]
     assert shown[0]["offset"] == pytest.approx(5.0, abs=1e-3)
     many = {f"x{number} [m/s^2]": bouncing() + 50.0 for number in range(12)}
     _, _, err = command("features", written(tmp_path / "many.csv", **many), "--only", "packets")
     assert err.count("warning:") == 11
-    assert "there are 2 further doubts" in err
+    assert "there are 2 further warnings" in err
 
 
 def test_bounces_of_a_microphone_with_an_offset() -> None:
