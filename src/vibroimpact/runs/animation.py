@@ -5,6 +5,7 @@ exaggerated deflection.
 from __future__ import annotations
 
 from io import BytesIO
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -175,35 +176,41 @@ class _AnimationScene:
     def frame(self, number: int) -> NDArray[np.uint8]:
         """Return a frame as an image, (height, width, 3)."""
         deflection = self.deflection
-        height = self.factor * deflection.height[number][np.ix_(self.rows, self.columns)].astype(
-            float
-        )
-        across, up = project(self.x, self.y, height)
-        corner = np.stack([across, up], axis=-1)
-        cells = np.stack(
-            [corner[:-1, :-1], corner[:-1, 1:], corner[1:, 1:], corner[1:, :-1]], axis=2
-        ).reshape(-1, 4, 2)
-        mean = (
-            0.25 * (height[:-1, :-1] + height[:-1, 1:] + height[1:, 1:] + height[1:, :-1]).ravel()
-        )
+        drawn_height = deflection.height[number][np.ix_(self.rows, self.columns)]
+        height = self.factor * drawn_height.astype(float)
+        corners = np.stack(project(self.x, self.y, height), axis=-1)
+        cells: Any = np.stack(_at_corners_of_cells(corners), axis=2).reshape(-1, 4, 2)
+        mean = np.mean(_at_corners_of_cells(height), axis=0).ravel()
         # painter's algorithm: the farthest cells are drawn first
         order = np.argsort(-depth(self.x, self.y)[:-1, :-1].ravel(), kind="stable")
+        # heights are NaN outside a plate that is no rectangle
         order = order[np.isfinite(mean[order])]
         self.plate.set_verts(cells[order])
         self.plate.set_array(mean[order])
-        contact = float(deflection.contact_deflection[number]) * self.factor
-        place = tuple(float(part) for part in project(*self.contact, np.array(contact)))
-        centre = tuple(float(part) for part in project(*self.contact, self._ball_height(number)))
-        self.shadow.set_center((place[0], place[1]))
-        self.ball.set_center((centre[0], centre[1]))
-        self.shine.set_center((centre[0] - 0.35 * self.radius, centre[1] + 0.4 * self.radius))
-        since = float(deflection.time[number]) - self.touch
-        self.clock.set_text(_clock(since))
+        self._move_ball(number)
+        self.clock.set_text(_clock(float(deflection.time[number]) - self.touch))
         self.canvas.restore_region(self.ground)  # type: ignore[no-untyped-call]
         renderer = self.canvas.get_renderer()  # type: ignore[no-untyped-call]
         for artist in self.movers:
             artist.draw(renderer)
         return np.array(self.canvas.buffer_rgba())[..., :3]  # type: ignore[no-untyped-call]
+
+    def _move_ball(self, number: int) -> None:
+        """Move ball, shine and shadow to where they are in a frame."""
+        contact = self.factor * float(self.deflection.contact_deflection[number])
+        shadow_x, shadow_y = project(*self.contact, np.array(contact))
+        self.shadow.set_center((float(shadow_x), float(shadow_y)))
+        ball_x, ball_y = project(*self.contact, self._ball_height(number))
+        self.ball.set_center((float(ball_x), float(ball_y)))
+        # the light comes from the upper left
+        shine_x = float(ball_x) - 0.35 * self.radius
+        shine_y = float(ball_y) + 0.4 * self.radius
+        self.shine.set_center((shine_x, shine_y))
+
+
+def _at_corners_of_cells(nodal: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return values on a grid at the four corners of each cell, in the order of an outline."""
+    return nodal[:-1, :-1], nodal[:-1, 1:], nodal[1:, 1:], nodal[1:, :-1]
 
 
 def _show_whole(
@@ -222,5 +229,9 @@ def _show_whole(
 
 
 def _clock(since: float) -> str:
-    phrase = text(abs(since), "s", 3) if abs(since) < 1e-3 else f"{fixed(since / 1e-3, 2)}\u00a0ms"
-    return f"{phrase} {'before' if since < 0.0 else 'after'} first touch"
+    # milliseconds with fixed decimals keep the figures of a clock in place
+    distance = f"{fixed(since / 1e-3, 2)}\u00a0ms"
+    if abs(since) < 1e-3:
+        distance = text(abs(since), "s", 3)
+    side = "before" if since < 0.0 else "after"
+    return f"{distance} {side} first touch"

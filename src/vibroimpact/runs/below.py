@@ -9,7 +9,9 @@ from vibroimpact.results.result import Result
 
 def body_below(result: Result) -> str:
     """Return what the sphere falls on: "plate" or "lower sphere"."""
-    return "plate" if result.case.get("plate", {}).get("radius") is None else "lower sphere"
+    if result.case.get("plate", {}).get("radius") is None:
+        return "plate"
+    return "lower sphere"
 
 
 def level_below(result: Result) -> str:
@@ -23,8 +25,9 @@ def level_below(result: Result) -> str:
     """
     if "surface_m" in result.history:
         return "the mean position of the plate"
-    body = f"the {body_below(result)}"
-    return f"the initial position of {body}" if is_free_below(result) else body
+    if is_free_below(result):
+        return f"the initial position of the {body_below(result)}"
+    return f"the {body_below(result)}"
 
 
 def is_free_below(result: Result) -> bool:

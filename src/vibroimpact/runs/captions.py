@@ -66,12 +66,14 @@ def _force(result: Result) -> str:
         f"acts in impact {most + 1}"
     )
     if lead > 0.001 * impacts["duration_s"][most]:
-        causes = ["damping adds to the force during loading"] if _loses_in_contact(result) else []
-        causes += ["the sphere vibrates"] if "sphere" in result.peaks else []
-        phrase += (
-            f", {text(lead, 's', 3)} before the largest indentation: "
-            f"{', and '.join(causes)}".removesuffix(": ")
-        )
+        causes = []
+        if _loses_in_contact(result):
+            causes.append("damping adds to the force during loading")
+        if "sphere" in result.peaks:
+            causes.append("the sphere vibrates")
+        phrase += f", {text(lead, 's', 3)} before the largest indentation"
+        if causes:
+            phrase += f": {', and '.join(causes)}"
     return f"{phrase}. {_in_whole_run(result)}".strip()
 
 
@@ -92,12 +94,12 @@ def _velocity(result: Result) -> str:
     approach, separation, restitution = (
         impact_text(result, 0, name, unit) for name, unit in columns.items()
     )
-    return (
-        f"In impact 1 the sphere arrives at {approach} and leaves at {separation}"
-        f"{', along the normal' if 'tangential_restitution' in impacts else ''}"
-        f"{f', relative to the {body_below(result)}' if _moves_below(result) else ''}: a "
-        f"restitution of {restitution}."
-    )
+    phrase = f"In impact 1 the sphere arrives at {approach} and leaves at {separation}"
+    if "tangential_restitution" in impacts:
+        phrase += ", along the normal"
+    if _moves_below(result):
+        phrase += f", relative to the {body_below(result)}"
+    return f"{phrase}: a restitution of {restitution}."
 
 
 def _moves_below(result: Result) -> bool:
@@ -141,17 +143,18 @@ def _loops(result: Result) -> str:
     first, last = (
         impact_text(result, impact, "energy_lost_J", "J") for impact in (contacts[0], contacts[-1])
     )
-    if "sphere" in result.peaks:
-        also = " and the energy that the sphere's vibration took up. Lost"
-    else:
-        also = ""
+    also = ""
     if result.deformation.get("treatment") == "identified":
         also = " and the energy stored in the local element at release. Lost"
+    elif "sphere" in result.peaks:
+        also = " and the energy that the sphere's vibration took up. Lost"
     phrase = (
         f"The area that a loop encloses is the energy lost in that contact{also}: {first} in "
         f"impact {contacts[0] + 1}"
     )
-    return f"{phrase}, {last} in impact {contacts[-1] + 1}." if len(contacts) > 1 else f"{phrase}."
+    if len(contacts) > 1:
+        phrase += f", {last} in impact {contacts[-1] + 1}"
+    return f"{phrase}."
 
 
 def _energy(result: Result) -> str:
@@ -166,19 +169,18 @@ def _energy(result: Result) -> str:
         )
     phrase += _vibration(result)
     if result.energy.get("drive_J"):
-        phrase += (
-            f" The moving plate {'added' if result.energy['drive_J'] < 0.0 else 'removed'} "
-            f"{text(abs(result.energy['drive_J']), 'J')}."
-        )
+        drawn = result.energy["drive_J"]
+        verb = "added" if drawn < 0.0 else "removed"
+        phrase += f" The moving plate {verb} {text(abs(drawn), 'J')}."
     if np.min(result.history["potential_J"]) < -0.01 * put_in:
         phrase += (
             " Below the height of first touch the potential energy is negative; the other bands "
             "then begin below zero."
         )
-    return (
-        phrase + " The bands add up to the energy put "
-        f"in{' and the work of the plate' if 'drive_J' in result.energy else ''} at all times."
-    )
+    supplied = "the energy put in"
+    if "drive_J" in result.energy:
+        supplied += " and the work of the plate"
+    return f"{phrase} The bands add up to {supplied} at all times."
 
 
 def _vibration(result: Result) -> str:
@@ -186,31 +188,30 @@ def _vibration(result: Result) -> str:
     left in their motion; empty if none moves.
     """
     least = _NOTHING_LEFT * result.energy["input_J"]
+    bodies = {}
     if "sphere" in result.peaks:
-        bodies = {"the vibration of the sphere": ["sphere_vibration_J", "sphere_strain_J"]}
-    else:
-        bodies = {}
+        bodies["the vibration of the sphere"] = ["sphere_vibration_J", "sphere_strain_J"]
     of_plate = ["plate_kinetic_J", "plate_strain_J"]
-    # it may be free, and rigid
-    if (
-        "plate" in result.peaks
-        or sum(abs(result.energy.get(name, 0.0)) for name in of_plate) > least
-    ):
+    plate_energy = sum(abs(result.energy.get(name, 0.0)) for name in of_plate)
+    # a plate that is free and rigid moves without having peaks of a vibration
+    if "plate" in result.peaks or plate_energy > least:
         # without that of the supports
         kind = "vibration" if "surface_m" in result.history else "motion"
         bodies[f"the {kind} of the {body_below(result)}"] = of_plate
     if not bodies:
         return ""
-    where = f"the {kind} of both" if len(bodies) > 1 else next(iter(bodies))
+    where = next(iter(bodies))
+    if len(bodies) > 1:
+        where = f"the {kind} of both"
     names = [name for entries in bodies.values() for name in entries if name in result.energy]
-    still = sum(abs(result.energy[name]) for name in names)
-    vibration = energy_text(result, *names) if still > least else f"less than {text(least, 'J', 1)}"
-    damped = (
-        "The damping of the bodies dissipated "
-        f"{energy_text(result, 'sphere_damping_J', 'plate_damping_J')}, and "
-    )
-    remains = f"{vibration} remains in {where}."
-    return f" {damped}{remains}" if result.peaks else f" At the end {remains}"
+    remaining_energy = sum(abs(result.energy[name]) for name in names)
+    remaining = f"less than {text(least, 'J', 1)}"
+    if remaining_energy > least:
+        remaining = energy_text(result, *names)
+    if not result.peaks:
+        return f" At the end {remaining} remains in {where}."
+    damped = energy_text(result, "sphere_damping_J", "plate_damping_J")
+    return f" The damping of the bodies dissipated {damped}, and {remaining} remains in {where}."
 
 
 def _in_whole_run(result: Result) -> str:
@@ -334,15 +335,17 @@ def sensor_caption(result: Result, name: str) -> str:
     )
     if signal.overload_time > 0.0:
         sentences += " Its accelerometer is overloaded: values beyond its range are clipped"
-        sentences += (
-            "." if sensor.filter == "none" else " before the filter, which may overshoot the range."
-        )
+        if sensor.filter != "none":
+            sentences += " before the filter, which may overshoot the range"
+        sentences += "."
     values = signal.value[part]
     if len(values) < 4 or not np.any(values):
         return sentences
     spectrum = amplitude_spectrum(values, sensor.rate)
     top = 1 + int(spectrum.amplitude[1:].argmax())
-    ticks = "; ticks mark the plate's modes" if result.frequencies("plate") else ""
+    ticks = ""
+    if result.frequencies("plate"):
+        ticks = "; ticks mark the plate's modes"
     return (
         f"{sentences} The spectrum is one-sided, of {text(spectrum.span, 's', 3)} from the first "
         "touch on, with the falling half of a Hann "
@@ -375,15 +378,12 @@ def _part(value: float, whole: float) -> str:
 
 def _along_plate(result: Result) -> str:
     friction = result.case.get("contact", {}).get("friction")
-    drag = [
-        what
-        for what, entry in (("air", "air_J"), ("the liquid", "liquid_J"))
-        if entry in result.energy
-    ]
-    phrase = (
-        f"Along the plate the drag of {drag[0]} slows the sphere between impacts" if drag else ""
-    )
-    phrase = phrase or "Along the plate the sphere moves freely between impacts"
+    motion = "the sphere moves freely"
+    if "air_J" in result.energy:
+        motion = "the drag of air slows the sphere"
+    elif "liquid_J" in result.energy:
+        motion = "the drag of the liquid slows the sphere"
+    phrase = f"Along the plate {motion} between impacts"
     if friction is None:
         return f"{phrase}; there is no friction."
     phrase += (

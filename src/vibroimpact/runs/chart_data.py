@@ -73,11 +73,12 @@ def views_of_contacts(
     for impact in enlarged_contacts(result).tolist():
         touch = float(result.impacts["time_s"][impact])
         duration = float(result.impacts["duration_s"][impact])
-        before, after = (
-            (MARGIN * duration, (1.0 + MARGIN) * duration)
-            if span is None
-            else (0.06 * span(impact), span(impact))
-        )
+        if span is None:
+            before = MARGIN * duration
+            after = (1.0 + MARGIN) * duration
+        else:
+            after = span(impact)
+            before = 0.06 * after
         name = f"Impact {impact + 1}"
         since = f"Time since first touch of impact {impact + 1}"
         views.append(
@@ -100,7 +101,10 @@ def time_axis(result: Result, views: tuple[View, ...]) -> Axis:
     start = float(result.history["time_s"][0])
     end = float(result.history["time_s"][-1])
     room = 0.01 * (end - start)
-    return Axis("Time", "s", range=(start - room, end + room) if room > 0.0 else None, views=views)
+    limits = None
+    if room > 0.0:
+        limits = (start - room, end + room)
+    return Axis("Time", "s", range=limits, views=views)
 
 
 def spans_of_contact(result: Result) -> Spans:
@@ -144,13 +148,18 @@ def history_window(history: Mapping[str, Floats], start: float, end: float) -> d
     time = history["time_s"]
     first = np.searchsorted(time, start, side="left")
     last = np.searchsorted(time, end, side="right")
-    before = [start] if first < len(time) and time[0] < start < time[first] else []
-    after = [end] if last > 0 and time[last - 1] < end < time[-1] else []
+    # an end gets a point of its own where it lies between two of the history
+    before = []
+    if first < len(time) and time[0] < start < time[first]:
+        before.append(start)
+    after = []
+    if last > 0 and time[last - 1] < end < time[-1]:
+        after.append(end)
 
     def cut(values: Floats) -> Floats:
-        return np.concatenate(
-            [np.interp(before, time, values), values[first:last], np.interp(after, time, values)]
-        )
+        at_start = np.interp(before, time, values)
+        at_end = np.interp(after, time, values)
+        return np.concatenate([at_start, values[first:last], at_end])
 
     return {name: cut(values) for name, values in history.items()}
 
@@ -200,7 +209,9 @@ def drawn_history(result: Result) -> Mapping[str, Floats]:
 
 def _visible(x: Floats, y: Floats) -> Indices:
     points = visible_points(len(x), lambda first, last: (x[first:last], y[first:last]))
-    return np.arange(len(x)) if points is None else points
+    if points is None:
+        return np.arange(len(x))
+    return points
 
 
 def drawn_signal(signal: Signal, first: int, last: int) -> tuple[Floats, Floats]:
@@ -220,8 +231,7 @@ def drawn_signal(signal: Signal, first: int, last: int) -> tuple[Floats, Floats]
     shown = visible_points(
         count, lambda low, high: (signal.times(low, high), signal.value[low:high])
     )
-    kept = np.union1d(
-        np.empty(0, dtype=np.intp) if shown is None else shown,
-        np.arange(first, min(last, first + MOST_POINTS)),
-    )
+    kept = np.arange(first, min(last, first + MOST_POINTS))
+    if shown is not None:
+        kept = np.union1d(shown, kept)
     return kept / signal.sensor.rate, signal.value[kept]

@@ -44,10 +44,12 @@ def chart_makers(result: Result) -> dict[str, Callable[[], Chart]]:
     """
     history = drawn_history(result)
     in_contact = bool(len(contacts_with_duration(result)))
-    over_time = (
-        {"position": POSITION} | ({"force": FORCE} if in_contact else {}) | {"velocity": VELOCITY}
-    )
-    over_time |= {"acceleration": ACCELERATION} if in_contact else {}
+    over_time = {"position": POSITION}
+    if in_contact:
+        over_time["force"] = FORCE
+    over_time["velocity"] = VELOCITY
+    if in_contact:
+        over_time["acceleration"] = ACCELERATION
     makers: dict[str, Callable[..., Chart]] = {
         name: partial(history_chart, result, history, what) for name, what in over_time.items()
     }
@@ -65,11 +67,8 @@ def chart_makers(result: Result) -> dict[str, Callable[[], Chart]]:
                 "plate_motion": partial(plate_motion_chart, result, history),
                 "plate_energy": partial(plate_energy_chart, result, history),
             }
-            makers |= (
-                {"deflection": partial(deflection_chart, result)}
-                if result.deflection is not None
-                else {}
-            )
+            if result.deflection is not None:
+                makers["deflection"] = partial(deflection_chart, result)
     makers |= {
         name: partial(sensor_chart, result, name, sensor)
         for name, sensor in drawn_sensors(result).items()

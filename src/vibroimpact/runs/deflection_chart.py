@@ -149,10 +149,12 @@ def _label(place: tuple[float, float], name: str, extent: Extent | None) -> Labe
     after = right - place[0]
     across = _ACROSS * min(1.0, _SHAPE * (right - left) / (back - front))
     room = min(int(across * max(before, after) / (right - left)) - 1, _MOST_LETTERS)
-    phrase = name
-    if len(name) > room:
-        phrase = shortened(name, room) if room >= _FEWEST_LETTERS else ""
-    return Label(*place, phrase, "left" if before <= after else "right")
+    side = "left" if before <= after else "right"
+    if len(name) <= room:
+        return Label(*place, name, side)
+    if room < _FEWEST_LETTERS:
+        return Label(*place, "", side)
+    return Label(*place, shortened(name, room), side)
 
 
 def sensor_places(result: Result) -> list[tuple[str, float, float]]:

@@ -5,6 +5,7 @@ compliances and estimated errors.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from vibroimpact.cases.validity.plate_mesh import plate_mesh_error
 from vibroimpact.cases.validity.plate_waves import plate_theory_error
@@ -74,18 +75,16 @@ def deformation_rows(result: Result) -> list[tuple[str, str]]:
     """Return the rows of a table on deformation: description, and value with unit."""
     facts = result.deformation
     rows = []
+    of_modes = "Compliance of the plate's modes"
+    if "plate_static_compliance_m_N" in facts:
+        of_modes = "Part of it in the modes kept"
     for name, phrase in (
         (
             "plate_static_compliance_m_N",
             "Static compliance of the plate at the contact point, without rigid-body motion "
             "and local indentation",
         ),
-        (
-            "plate_modal_compliance_m_N",
-            "Part of it in the modes kept"
-            if "plate_static_compliance_m_N" in facts
-            else "Compliance of the plate's modes",
-        ),
+        ("plate_modal_compliance_m_N", of_modes),
         ("sphere_modal_compliance_m_N", "Quasi-static compliance of the sphere's modes"),
         (
             "series_compliance_m_N",
@@ -150,17 +149,16 @@ def _local_element(result: Result) -> list[tuple[str, str]]:
     damping = facts.get("local_damping_N_s_m", contact.get("local_damping"))
     if stiffness is None or damping is None:
         return []
-    known = [
-        facts.get(f"local_{name}_deviation_{unit}")
-        for name, unit in (("stiffness", "N_m"), ("damping", "N_s_m"))
-    ]
-    deviations = [
-        "" if deviation is None else f" ± {digits(float(deviation), 2)}" for deviation in known
-    ]
+    stiffness_text = _with_deviation(stiffness, facts.get("local_stiffness_deviation_N_m"))
+    damping_text = _with_deviation(damping, facts.get("local_damping_deviation_N_s_m"))
     return [
-        ("Stiffness of the local element", f"{digits(float(stiffness))}{deviations[0]}\u00a0N/m"),
-        (
-            "Damping of the local element",
-            f"{digits(float(damping))}{deviations[1]}\u00a0N\u00a0s/m",
-        ),
+        ("Stiffness of the local element", f"{stiffness_text}\u00a0N/m"),
+        ("Damping of the local element", f"{damping_text}\u00a0N\u00a0s/m"),
     ]
+
+
+def _with_deviation(value: Any, deviation: Any) -> str:
+    """Return a number and, where it is known, its standard deviation."""
+    if deviation is None:
+        return digits(float(value))
+    return f"{digits(float(value))} ± {digits(float(deviation), 2)}"

@@ -9,7 +9,7 @@ import numpy as np
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
-from vibroimpact.charts.marks import Layer, Level, Spans, Stack
+from vibroimpact.charts.marks import Layer, Level, Stack
 from vibroimpact.dynamics.motion.columns import ALL_HISTORY_COLUMNS
 from vibroimpact.results.result import Result
 from vibroimpact.runs.chart_data import spans_of_contact, time_axis, views_of_contacts
@@ -41,6 +41,8 @@ _ROLES = {
 
 _COLUMNS = 110
 """Number of points along the edge of a band over the whole run, besides those at impacts."""
+_MOST_CONTACTS = 45
+"""Largest number of contacts whose touch and release get a point each."""
 
 
 def ledger_chart(result: Result, history: Mapping[str, Floats], caption: str) -> Chart:
@@ -60,29 +62,27 @@ def ledger_chart(result: Result, history: Mapping[str, Floats], caption: str) ->
     layers = []
     for name, role in _ROLES.items():
         if name in bands and np.any(bands[name] > 1e-6 * put_in):
-            label = _MOTIONS[name][0] if name in _MOTIONS else ALL_HISTORY_COLUMNS[name].short
             if name == "contact_dissipated_J" and "plate_motion_J" in bands:
                 label = "damping of the contact"  # as opposed to that of the bodies
+            elif name in _MOTIONS:
+                label = _MOTIONS[name][0]
+            else:
+                label = ALL_HISTORY_COLUMNS[name].short
             layers.append(Layer(label, bands[name], role))
     sinks = np.min(bands["potential_J"]) < -0.01 * put_in
-    title = "Energy" + (
-        " (bands are stacked on the potential energy where it is negative)" if sinks else ""
-    )
+    title = "Energy"
+    if sinks:
+        title += " (bands are stacked on the potential energy where it is negative)"
     # contacts are shaded where they are enlarged alone, since the bands cover the ground
     stack = Stack(history["time_s"], tuple(layers), _drawn_points(result, history))
-    # by a plate that is shaken
-    brought = -history["drive_J"] if "drive_J" in history else np.zeros(1)
-    marks: tuple[Stack | Level | Spans, ...] = (
-        stack,
-        Level(put_in, "put in at the start" if brought.any() else "total put in", "total"),
-    )
+    drive_work = -history.get("drive_J", np.zeros(1))  # of a plate that is shaken
+    name_of_total = "put in at the start" if drive_work.any() else "total put in"
+    total = Level(put_in, name_of_total, "total")
     time = time_axis(result, views_of_contacts(result))
     low = float(min(np.min(bands["potential_J"]), 0.0))
-    panel = Panel(
-        time,
-        Axis("Energy", "J", range=(low, 1.06 * (put_in + max(float(brought.max()), 0.0)))),
-        (spans_of_contact(result), *marks),
-    )
+    high = 1.06 * (put_in + max(float(drive_work.max()), 0.0))
+    energy = Axis("Energy", "J", range=(low, high))
+    panel = Panel(time, energy, (spans_of_contact(result), stack, total))
     return Chart("energy", title, ((panel,),), caption, height=3.9)
 
 
@@ -105,30 +105,29 @@ def _drawn_points(result: Result, history: Mapping[str, Floats]) -> Indices:
     those at touch and release of the first contacts.
     """
     time = history["time_s"]
-    touch = result.impacts["time_s"][:45]
-    release = touch + result.impacts["duration_s"][:45]
+    last = len(time) - 1
+    touch = result.impacts["time_s"][:_MOST_CONTACTS]
+    release = touch + result.impacts["duration_s"][:_MOST_CONTACTS]
     count = min(max(4 * len(touch), _COLUMNS), 2 * _COLUMNS)
     spread = np.searchsorted(time, np.linspace(time[0], time[-1], count))
     # energies change faster in contact than in flight: a contact long enough to be visible gets
     # more points
     close = np.searchsorted(time, np.linspace(time[0], time[-1], 4 * _COLUMNS))
-    close = close[history["indentation_m"][close.clip(max=len(time) - 1)] > 0.0]
-    beside = [
-        np.searchsorted(time, touch),
-        np.searchsorted(time, release, side="right") - 1,
-        [len(time) - 1],
-    ]
-    kept = np.unique(np.concatenate([spread, close, *beside]).clip(0, len(time) - 1))
+    close = close[history["indentation_m"][close.clip(max=last)] > 0.0]
+    at_touch = np.searchsorted(time, touch)
+    at_release = np.searchsorted(time, release, side="right") - 1
+    kept = np.concatenate([spread, close, at_touch, at_release, [last]])
+    kept = np.unique(kept.clip(0, last))
     # energy stored in a local element at release is lost at once: keep the first point from release
     # on without it
-    calm = np.flatnonzero(history["contact_elastic_J"] <= 1e-4 * result.energy["input_J"])
-    after = np.searchsorted(calm, np.searchsorted(time, release, side="right") - 1)
+    is_stored = history["contact_elastic_J"] > 1e-4 * result.energy["input_J"]
+    calm = np.flatnonzero(~is_stored)
+    after = np.searchsorted(calm, at_release)
     kept = np.union1d(kept, calm[after[after < len(calm)]])
     # a contact too short to be visible would show as a hairline wherever a point happens to lie
     # inside it
     impact = np.searchsorted(result.impacts["time_s"], time[kept], side="right") - 1
-    brief = (
-        np.append(result.impacts["duration_s"], 0.0)[impact] < 3.0 * (time[-1] - time[0]) / _COLUMNS
-    )
-    inside = history["contact_elastic_J"][kept] > 1e-4 * result.energy["input_J"]
-    return np.asarray(kept[~(brief & inside)])
+    # before the first touch the impact is -1, which is of no duration
+    duration = np.append(result.impacts["duration_s"], 0.0)[impact]
+    is_brief = duration < 3.0 * (time[-1] - time[0]) / _COLUMNS
+    return np.asarray(kept[~(is_brief & is_stored[kept])])

@@ -25,7 +25,9 @@ def loops_chart(result: Result, caption: str) -> Chart:
     by impact and approach speed.
     """
     contacts = contacts_with_duration(result)
-    named = contacts if len(contacts) <= SERIES else contacts[:_NAMED]
+    named = contacts
+    if len(contacts) > SERIES:
+        named = contacts[:_NAMED]
     marks: list[Line | Points] = _other_loops(result, contacts[len(named) :])
     for number, impact in enumerate(named):
         name = f"impact {impact + 1}, {text(result.impacts['approach_speed_m_s'][impact], 'm/s')}"
@@ -58,9 +60,9 @@ def _other_loops(result: Result, others: Indices) -> list[Line | Points]:
     x, y = np.concatenate(
         [part for impact in drawn for part in (np.column_stack(_loop(result, impact)), gap)]
     ).T
-    which = f"impacts {others[0] + 1} to {others[-1] + 1}" + (
-        f" ({len(drawn)} of them)" if len(drawn) < len(others) else ""
-    )
+    which = f"impacts {others[0] + 1} to {others[-1] + 1}"
+    if len(drawn) < len(others):
+        which += f" ({len(drawn)} of them)"
     return [Line(np.ascontiguousarray(x), np.ascontiguousarray(y), which, "muted")]
 
 

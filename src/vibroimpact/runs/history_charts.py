@@ -73,7 +73,11 @@ def history_chart(
     caption : str
         The caption.
     """
-    level, label = (touch_height(result), "From first touch") if quantity.from_touch else (0.0, "")
+    level = 0.0
+    label = ""
+    if quantity.from_touch:
+        level = touch_height(result)
+        label = "From first touch"
     views = views_of_contacts(
         result,
         headline=lambda impact: quantity.headline(result, impact),
@@ -100,12 +104,11 @@ def history_chart(
         if len(times):
             marks.append(Points(times, values, name, role, _names(result, times)))
     value = Axis(quantity.label, HISTORY_COLUMNS[quantity.column].unit)
-    title = (
-        f"{quantity.title} above {level_below(result)}" if quantity is POSITION else quantity.title
-    )
-    return Chart(
-        quantity.column.split("_")[0], title, ((Panel(time, value, tuple(marks)),),), caption
-    )
+    title = quantity.title
+    if quantity is POSITION:
+        title += f" above {level_below(result)}"
+    panel = Panel(time, value, tuple(marks))
+    return Chart(quantity.column.split("_")[0], title, ((panel,),), caption)
 
 
 def _names(result: Result, times: Floats) -> tuple[str, ...]:

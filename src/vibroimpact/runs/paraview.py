@@ -54,9 +54,9 @@ def write_paraview(response: Response, folder: Path) -> None:
     times = frame_times_of(response)
     if not len(times):
         return
-    size = sum(
-        series_size(model.mesh, 2 if name == "sphere" else 1) for name, model in models.items()
-    )
+    # a file of the sphere has its displacement and its deformation
+    fields = {"plate": 1, "sphere": 2}
+    size = sum(series_size(model.mesh, fields[name]) for name, model in models.items())
     count = min(_FRAMES, len(times), int(_MOST_BYTES / size))
     if count < 2:
         return

@@ -84,15 +84,9 @@ def path_chart(result: Result, history: Mapping[str, Floats], caption: str) -> C
             last = place
     low = min(front, float(y.min()) - radius) - _ROOM * size
     beside = max(right, float(x.max()) + radius) + _ROOM * size
-    marks += (
-        dimension((left, low), (right, low), brief(right - left, "m"), "below")
-        if right > left
-        else []
-    )
-    marks += (
-        dimension((beside, front), (beside, back), brief(back - front, "m"), "left")
-        if back > front
-        else []
-    )
+    if right > left:
+        marks += dimension((left, low), (right, low), brief(right - left, "m"), "below")
+    if back > front:
+        marks += dimension((beside, front), (beside, back), brief(back - front, "m"), "left")
     panel = Panel(Axis("x", "m"), Axis("y", "m"), tuple(marks), picture=True)
     return Chart("path", "Path over the plate", ((panel,),), caption, height=3.4)

@@ -123,7 +123,8 @@ def sensor_table(result: Result) -> Table:
     if any(overloads):
         headings.append("beyond its range for")
         for row, overload in zip(rows, overloads, strict=True):
-            row.append(text(overload, "s") if overload else MISSING)
+            duration = text(overload, "s") if overload else MISSING
+            row.append(duration)
     return table_of(headings, rows, texts=headings)
 
 

@@ -80,10 +80,11 @@ def rigid_scene(result: Result) -> dict[str, Any]:
     """
     size = [float(side) for side in result.case.get("plate", {}).get("size", ())]
     radius = touch_height(result)
-    radius = (
-        radius if np.isfinite(radius) else float(result.case.get("sphere", {}).get("radius", 0.025))
-    )
-    half = (0.5 * size[0], 0.5 * size[1]) if size else (8.0 * radius, 8.0 * radius)
+    if not np.isfinite(radius):  # it never touches
+        radius = float(result.case.get("sphere", {}).get("radius", 0.025))
+    half = (8.0 * radius, 8.0 * radius)
+    if size:
+        half = (0.5 * size[0], 0.5 * size[1])
     position = result.case.get("drop", {}).get("position", (0.0, 0.0))
     history = result.history
     time = np.linspace(0.0, float(history["time_s"][-1]), _FRAMES)
@@ -94,25 +95,23 @@ def rigid_scene(result: Result) -> dict[str, Any]:
         time, history["time_s"], history.get("surface_m", np.zeros_like(history["time_s"]))
     )
     reach = 1.1 * max(half)
-    first = float(result.impacts["time_s"][0]) if len(result.impacts["time_s"]) else 0.0
+    first_touch = 0.0
+    if len(result.impacts["time_s"]):
+        first_touch = float(result.impacts["time_s"][0])
+    path = {}
+    if moves_along(history):
+        path["path"] = [
+            np.interp(time, history["time_s"], history[f"position_{axis}_m"]) for axis in "xy"
+        ]
     return {
         "x": np.array([-half[0], half[0]]),
         "y": np.array([-half[1], half[1]]),
         "height": np.repeat(surface[:, None], 4, axis=1).astype(np.float32),
-        "time": time - first,
+        "time": time - first_touch,
         "sphere": height,
         "contact_height": surface,
         "contact": [float(position[0]), float(position[1])],
-        **(
-            {
-                "path": [
-                    np.interp(time, history["time_s"], history[f"position_{axis}_m"])
-                    for axis in "xy"
-                ]
-            }
-            if moves_along(history)
-            else {}
-        ),
+        **path,
         "radius": radius,
         "exaggeration": 1.0,
         "gap_scale": min(1.0, reach / max(float(height.max()) - radius, 1e-300)),

@@ -118,13 +118,13 @@ def _spectrum(result: Result, name: str) -> Panel:
     modes = np.array(result.frequencies("plate"))
     modes = modes[modes < 0.5 * signal.sensor.rate]
     shown = min(0.5 * signal.sensor.rate, 1.25 * float(modes.max(initial=0.0)) or np.inf)
-    frequency = Axis("Frequency", "Hz", range=(0.0, shown if np.isfinite(shown) else np.nan))
-    amplitude = Axis(
-        "Amplitude",
-        signal.sensor.unit,
-        log=True,
-        range=(most * 10.0**-_DECADES, 3.0 * most) if most > 0.0 else None,
-    )
+    if not np.isfinite(shown):
+        shown = np.nan  # as far as the spectrum reaches
+    frequency = Axis("Frequency", "Hz", range=(0.0, shown))
+    limits = None
+    if most > 0.0:
+        limits = (most * 10.0**-_DECADES, 3.0 * most)
+    amplitude = Axis("Amplitude", signal.sensor.unit, log=True, range=limits)
     line = Line(
         spectrum.frequency[1:],
         np.maximum(spectrum.amplitude[1:], 1e-12 * most + 1e-300),

@@ -48,7 +48,9 @@ def setup_chart(result: Result) -> Chart:
         The result; without a case only what it holds itself is drawn.
     """
     extent = plate_extent(result)
-    panels = [_from_the_side(result, extent)] + ([_from_above(result, extent)] if extent else [])
+    panels = [_from_the_side(result, extent)]
+    if extent:
+        panels.append(_from_above(result, extent))
     return Chart(
         "setup",
         "Set-up",
@@ -61,29 +63,36 @@ def setup_chart(result: Result) -> Chart:
 def _listed(things: Sequence[str]) -> str:
     """Return things in a sentence."""
     *first, last = things
-    return f"{', '.join(first)} and {last}" if first else last
+    if not first:
+        return last
+    return f"{', '.join(first)} and {last}"
 
 
 def _not_to_scale(result: Result, extent: Extent | None) -> list[str]:
     """Return what is not drawn to scale: the height of the drop, and what is not known."""
+    things = ["the height of the drop"]
     if result.case.get("plate", {}).get("radius") is not None:
-        return ["the height of the drop"]
-    of_sphere = [] if _knows_radius(result) else ["the sphere, whose radius is not given"]
+        return things
+    if not _knows_radius(result):
+        things.append("the sphere, whose radius is not given")
     if extent is None:
-        return ["the height of the drop", *of_sphere, "the plate, whose size is not given"]
-    thickness = (
-        [] if np.isfinite(extent.thickness) else ["the thickness of the plate, which is not given"]
-    )
-    return ["the height of the drop", *of_sphere, "the depth of the supports", *thickness]
+        return [*things, "the plate, whose size is not given"]
+    things.append("the depth of the supports")
+    if not np.isfinite(extent.thickness):
+        things.append("the thickness of the plate, which is not given")
+    return things
 
 
 def drawn_radius(result: Result) -> float:
     """Return the radius of the sphere as it is drawn [m]; of a body made in Python the
     height of its centre at first touch.
     """
-    given = result.case.get("sphere", {}).get("radius")
-    radius = float(given) if given is not None else touch_height(result)
-    return radius if np.isfinite(radius) and radius > 0.0 else _USUAL_RADIUS
+    radius = result.case.get("sphere", {}).get("radius")
+    if radius is None:
+        radius = touch_height(result)
+    if np.isfinite(float(radius)) and float(radius) > 0.0:
+        return float(radius)
+    return _USUAL_RADIUS
 
 
 def _knows_radius(result: Result) -> bool:
@@ -117,12 +126,9 @@ def _from_the_side(result: Result, extent: Extent | None) -> Panel:
     marks += [
         Line(np.array([at, at]), np.array([0.0, high - radius]), role="dotted"),
         Outline(at + radius * np.cos(_TURN), high + radius * np.sin(_TURN), role="sphere"),
-        *(
-            [Label(at - radius, high, f"radius {as_given(radius, 'm')}", "right")]
-            if _knows_radius(result)
-            else []
-        ),
     ]
+    if _knows_radius(result):
+        marks.append(Label(at - radius, high, f"radius {as_given(radius, 'm')}", "right"))
     beside = at + 1.8 * radius + 0.02 * half
     marks += dimension((beside, 0.0), (beside, high), _drop_words(result), "left")
     return Panel(Axis("x", "m"), Axis("z", "m"), tuple(marks), "From the side", picture=True)
@@ -140,8 +146,11 @@ def _sphere_below(result: Result, radius: float) -> list[Mark]:
 
 
 def _plate(result: Result, extent: Extent, *, dimensioned: bool) -> list[Mark]:
-    known = bool(np.isfinite(extent.thickness))
-    (left, right), thickness = extent.x, extent.thickness if known else _THIN * extent.longer
+    left, right = extent.x
+    is_thickness_known = bool(np.isfinite(extent.thickness))
+    thickness = extent.thickness
+    if not is_thickness_known:
+        thickness = _THIN * extent.longer
     marks: list[Mark] = [
         Outline(np.array([left, right, right, left]), np.array([0.0, 0.0, -thickness, -thickness]))
     ]
@@ -151,11 +160,9 @@ def _plate(result: Result, extent: Extent, *, dimensioned: bool) -> list[Mark]:
         low = min(float(outline.y.min()) for outline in outlines) - 0.04 * (right - left)
         beside = max(float(outline.x.max()) for outline in outlines)
         marks += dimension((left, low), (right, low), as_given(right - left, "m"), "below")
-        marks += (
-            [Label(beside, -0.5 * thickness, f"{as_given(thickness, 'm')} thick", "left")]
-            if known
-            else []
-        )
+        if is_thickness_known:
+            words = f"{as_given(thickness, 'm')} thick"
+            marks.append(Label(beside, -0.5 * thickness, words, "left"))
     return marks
 
 
@@ -165,16 +172,15 @@ _APPROACH = ("approach_speed_m_s", "approach_velocity_x_m_s", "approach_velocity
 def _drop_words(result: Result) -> str:
     start = float(result.history["position_m"][0])
     if start <= touch_height(result):  # a run that begins at first touch
-        parts = [
-            float(result.impacts[name][0]) if name in result.impacts else 0.0 for name in _APPROACH
+        components = [
+            float(result.impacts[name][0]) for name in _APPROACH if name in result.impacts
         ]
-        down = parts[0]
-        speed = float(np.linalg.norm(parts))
+        down = components[0]
+        speed = float(np.linalg.norm(components))
+        phrase = f"arrives at {as_given(speed, 'm/s')}"
         if down < speed:
-            angle = f" at {np.degrees(np.arccos(down / speed)):.4g}° from the normal"
-        else:
-            angle = ""
-        return f"arrives at {as_given(speed, 'm/s')}{angle}"
+            phrase += f" at {np.degrees(np.arccos(down / speed)):.4g}° from the normal"
+        return phrase
     return f"{as_given(start, 'm')} above {level_below(result)}"
 
 
@@ -213,8 +219,10 @@ def as_given(value: float, unit: str) -> str:
     """Return a value [SI] as somebody gave it, without zeros at its end."""
     best = multiple(unit, value)
     shown = digits(value / best.size, 6)
-    plain = shown.rstrip("0").rstrip(".") if "." in shown and "\u00b7" not in shown else shown
-    return f"{plain}\u00a0{best.unit}".rstrip("\u00a0")
+    # zeros at the end of an integer, or of a power of ten, are not superfluous
+    if "." in shown and "\u00b7" not in shown:
+        shown = shown.rstrip("0").rstrip(".")
+    return f"{shown}\u00a0{best.unit}".rstrip("\u00a0")
 
 
 def setup_rows(result: Result) -> list[tuple[str, str]]:
@@ -249,28 +257,19 @@ def setup_rows(result: Result) -> list[tuple[str, str]]:
         rows.append(("Motion of the supports", _motion_words(motion)))
     if (air := case["drop"].get("air")) is not None:
         rows.append(("Air", fluid_words(air)))
-    rows.append(
-        (
-            "Contact law",
-            _law_words(
-                {
-                    key: value
-                    for key, value in case["contact"].items()
-                    if key not in ("friction", "liquid")
-                }
-            ),
-        )
-    )
+    of_law = {
+        key: value for key, value in case["contact"].items() if key not in ("friction", "liquid")
+    }
+    rows.append(("Contact law", _law_words(of_law)))
     if (liquid := case["contact"].get("liquid")) is not None:
         rows.append(("Liquid", fluid_words(liquid)))
     if (friction := case["contact"].get("friction")) is not None:
         rows.append(("Friction", _law_words(friction)))
     for sensor in case.get("sensors", ()):
-        by = f" by {instruments()[sensor['instrument']].noun}" if "instrument" in sensor else ""
-        phrase = (
-            f"{sensor['quantity']}{by} at {_place(sensor['position'])}, "
-            f"{as_given(float(sensor['rate']), 'Hz')}"
-        )
+        phrase = sensor["quantity"]
+        if "instrument" in sensor:
+            phrase += f" by {instruments()[sensor['instrument']].noun}"
+        phrase += f" at {_place(sensor['position'])}, {as_given(float(sensor['rate']), 'Hz')}"
         rows.append((f"Sensor {shortened(visible(sensor['name']), 60)}", phrase))
     return rows
 
@@ -278,27 +277,23 @@ def setup_rows(result: Result) -> list[tuple[str, str]]:
 def _motion_words(motion: Mapping[str, Any]) -> str:
     """Return the motion of the plate's supports in words."""
     if (file := motion.get("file")) is not None:
-        phrase = [
-            f"as in {shortened(visible(Path(file).name), 60)}",
-            *(["repeated"] if motion.get("repeat") else []),
-        ]
+        phrase = [f"as in {shortened(visible(Path(file).name), 60)}"]
+        if motion.get("repeat"):
+            phrase.append("repeated")
     else:
         phrase = [
-            f"amplitude {as_given(float(motion['amplitude']), 'm')}, frequency "
-            f"{as_given(float(motion['frequency']), 'Hz')}"
+            f"amplitude {as_given(float(motion['amplitude']), 'm')}",
+            f"frequency {as_given(float(motion['frequency']), 'Hz')}",
         ]
-        phrase += (
-            [f"phase {np.degrees(float(motion['phase'])):.4g}°"] if motion.get("phase") else []
-        )
-    along = [float(part) for part in motion["direction"]]
-    return ", ".join(
-        [
-            *phrase,
-            "along the normal"
-            if not any(along[:2])
-            else f"along ({', '.join(f'{part:.4g}' for part in along)})",
-        ]
-    )
+        if motion.get("phase"):
+            phrase.append(f"phase {np.degrees(float(motion['phase'])):.4g}°")
+    direction = [float(component) for component in motion["direction"]]
+    if any(direction[:2]):
+        components = ", ".join(f"{component:.4g}" for component in direction)
+        phrase.append(f"along ({components})")
+    else:
+        phrase.append("along the normal")
+    return ", ".join(phrase)
 
 
 def _body_words(body: Mapping[str, Any]) -> str:
@@ -307,22 +302,23 @@ def _body_words(body: Mapping[str, Any]) -> str:
         phrase.append(f"radius {as_given(float(body['radius']), 'm')}")
     if body.get("mass") is not None:
         phrase.append(f"mass {as_given(float(body['mass']), 'kg')}")
-    if (inertia := body.get("inertia")) is not None:
-        phrase.append(
-            inertia
-            if isinstance(inertia, str)
-            else f"moment of inertia {as_given(float(inertia), 'kg m^2')}"
-        )
+    inertia = body.get("inertia")
+    if isinstance(inertia, str):  # solid or hollow
+        phrase.append(inertia)
+    elif inertia is not None:
+        phrase.append(f"moment of inertia {as_given(float(inertia), 'kg m^2')}")
     if body.get("size"):
         phrase.append(" \u00d7 ".join(as_given(float(side), "m") for side in body["size"]))
     material = body.get("material")
     if isinstance(material, Mapping):
-        name = f"{shortened(visible(material['name']), 60)}: " if material.get("name") else ""
-        stiff = (
+        values = (
             f"E {as_given(float(material['youngs_modulus']), 'Pa')}, \u03bd "
-            f"{as_given(float(material['poissons_ratio']), '')}"
+            f"{as_given(float(material['poissons_ratio']), '')}, "
+            f"{as_given(float(material['density']), 'kg/m^3')}"
         )
-        phrase.append(f"{name}{stiff}, {as_given(float(material['density']), 'kg/m^3')}")
+        if material.get("name"):
+            values = f"{shortened(visible(material['name']), 60)}: {values}"
+        phrase.append(values)
     elif material is not None:
         phrase.append(f"material {material}")
     if body.get("modes"):
@@ -347,12 +343,12 @@ def _law_words(contact: Mapping[str, Any]) -> str:
         if isinstance(value, Mapping):
             parameters.append(f"{key.replace('_', ' ')} {of_table(value).words}")
             continue
-        numbers = [
-            as_given(float(number), unit)
-            for number in (value if isinstance(value, Sequence) else [value])
-        ]
+        # a list has a value for each impact
+        numbers = [as_given(float(number), unit) for number in np.atleast_1d(value)]
         parameters.append(f"{key.replace('_', ' ')} {', '.join(numbers)}")
-    return f"{name}: {', '.join(parameters)}" if parameters else name
+    if not parameters:
+        return name
+    return f"{name}: {', '.join(parameters)}"
 
 
 def _place(position: Any) -> str:

@@ -63,6 +63,10 @@ def first_response(result: Result, name: str) -> slice:
     """
     touches = result.impacts["time_s"]
     signal = result.signals[name]
-    first = signal.first_at(float(touches[0])) if len(touches) else 0
-    last = signal.first_at(float(touches[1])) if len(touches) > 1 else len(signal.value)
+    first = 0
+    last = len(signal.value)
+    if len(touches):
+        first = signal.first_at(float(touches[0]))
+    if len(touches) > 1:
+        last = signal.first_at(float(touches[1]))
     return slice(first, min(last, first + _LONGEST))

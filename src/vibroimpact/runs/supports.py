@@ -49,13 +49,15 @@ def plate_extent(result: Result) -> Extent | None:
     size = [float(side) for side in plate.get("size", ())]
     thickness = size[2] if size else math.nan
     if deflection is not None and ("file" in plate.get("mesh", {}) or not size):
-        (left, right), (front, back) = (
-            (float(side[0]), float(side[-1])) for side in (deflection.x, deflection.y)
-        )
-        return Extent((left, right), (front, back), thickness)
-    if size:
-        return Extent((-0.5 * size[0], 0.5 * size[0]), (-0.5 * size[1], 0.5 * size[1]), thickness)
-    return None
+        x = (float(deflection.x[0]), float(deflection.x[-1]))
+        y = (float(deflection.y[0]), float(deflection.y[-1]))
+        return Extent(x, y, thickness)
+    if not size:
+        return None
+    # a plate of a given size lies around the origin
+    half_x = 0.5 * size[0]
+    half_y = 0.5 * size[1]
+    return Extent((-half_x, half_x), (-half_y, half_y), thickness)
 
 
 def single_supports(case: ResolvedCase) -> list[Mapping[str, Any]]:
@@ -167,18 +169,18 @@ def _from_the_side(
     thickness: float,
     sizes: tuple[float, float],
 ) -> list[Mark]:
-    (low, high), (deep, wide), below, middle = (
-        across,
-        sizes,
-        -thickness,
-        0.5 * (across[0] + across[1]),
-    )
-    if (
-        support["type"] == "edge" and high - low > 2.0 * wide
-    ):  # along the plate, in front and behind
+    low, high = across
+    deep, wide = sizes
+    below = -thickness
+    middle = 0.5 * (low + high)
+    if support["type"] == "edge" and high - low > 2.0 * wide:
+        # along the plate, in front and behind
         return [_block(low, high, below, below - 0.5 * deep, "held")]
     if support["type"] == "edge" and support["condition"] == "clamped":
-        outside = (low - deep, low) if support["edge"] == "x-min" else (high, high + deep)
+        # the jaw lies outside the plate, and reaches above it
+        outside = (high, high + deep)
+        if support["edge"] == "x-min":
+            outside = (low - deep, low)
         return [_block(*outside, 0.5 * deep, below - 0.5 * deep)]
     if support["type"] in ("edge", "point"):  # a knife
         side = np.array([0.0, 0.5, -0.5])
@@ -225,12 +227,11 @@ def support_words(result: Result) -> str:
         return f"{given.replace('-', ' ')} along all edges"
     singles = single_supports(result.case)
     counts = Counter(_kind(single) for single in singles if single["type"] in _PLURALS)
-    phrase = [
-        f"{count} {plural}" if count > 1 else kind for (kind, plural), count in counts.items()
-    ]
-    for condition in dict.fromkeys(
-        single["condition"] for single in singles if single["type"] == "edge"
-    ):
+    phrase = []
+    for (kind, plural), count in counts.items():
+        phrase.append(f"{count} {plural}" if count > 1 else kind)
+    conditions = [single["condition"] for single in singles if single["type"] == "edge"]
+    for condition in dict.fromkeys(conditions):
         edges = [single["edge"] for single in singles if single.get("condition") == condition]
         phrase.append(f"{condition.replace('-', ' ')} at {', '.join(edges)}")
     phrase += [
@@ -252,5 +253,7 @@ _PLURALS = {
 def _kind(support: Mapping[str, Any]) -> tuple[str, str]:
     """Return what a support is called, one and several of them."""
     single, several = _PLURALS[support["type"]]
-    along = f" held along {', '.join(support['directions'])}" if support["type"] == "point" else ""
+    if support["type"] != "point":
+        return single, several
+    along = f" held along {', '.join(support['directions'])}"
     return single + along, several + along

@@ -171,11 +171,10 @@ def _table_for_terminal(result: Result, columns: Mapping[str, tuple[str, list[st
 
 def energy_lost_sentence(result: Result) -> str:
     """Return a sentence on what the energy lost in an impact is."""
-    friction = "friction and " if "friction_J" in result.energy else ""
-    return (
-        f"Energy lost is the energy dissipated in the contact, without {friction}the energy of "
-        "vibration."
-    )
+    others = "the energy of vibration"
+    if "friction_J" in result.energy:
+        others = f"friction and {others}"
+    return f"Energy lost is the energy dissipated in the contact, without {others}."
 
 
 def shown_columns(result: Result) -> list[str]:
@@ -215,10 +214,9 @@ def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
     """
     put_in = result.energy["input_J"]
     scale = multiple("J", result.energy["input_J"])
+    parts = {}
     if result.energy.keys() >= FRICTION_PARTS.keys():
-        parts = {"friction_J": tuple(FRICTION_PARTS)}
-    else:
-        parts = {}
+        parts["friction_J"] = tuple(FRICTION_PARTS)
     entries = (*LEDGER, *VIBRATION_LEDGER, *SHAKEN_LEDGER, *OBLIQUE_LEDGER, *FLUID_LEDGER)
     values = {
         name: result.energy[name]
@@ -309,7 +307,10 @@ def _certain_figures_of_energy(entry: str, result: Result) -> int:
     # the change of a slow separation speed is relative to a tenth of the approach speed
     energy = result.energy["input_J"] * separation * max(separation, _SLOW * closing) / first**2
     value = abs(result.energy[entry])
-    return int(certain_figures(2.0 * change[-1] * max(1.0, energy / value if value > 0.0 else 1.0)))
+    magnification = 1.0
+    if value > 0.0:
+        magnification = max(1.0, energy / value)
+    return int(certain_figures(2.0 * change[-1] * magnification))
 
 
 def _to_same_decimals(value: float, whole: float, significant: int) -> str:
@@ -321,7 +322,9 @@ def _to_same_decimals(value: float, whole: float, significant: int) -> str:
     decimals = max(0, significant - 1 - math.floor(math.log10(whole)))
     if decimals > 12:
         return digits(value, significant)
-    return fixed(value, decimals) if abs(value) >= 100.0 * 10.0**-decimals else digits(value, 3)
+    if abs(value) >= 100.0 * 10.0**-decimals:
+        return fixed(value, decimals)
+    return digits(value, 3)  # of which fewer than three would be left
 
 
 def significant_figures(name: str, change: Floats) -> Indices:
@@ -401,9 +404,9 @@ def formatted_column(
         return "", [fixed(value, 0) for value in values]
     if kind == "factor":
         return "", [digits(value, 2) for value in values]
-    figures = significant_figures(
-        name, np.zeros(len(values)) if change is None else change
-    ).tolist()
+    if change is None:
+        change = np.zeros(len(values))
+    figures = significant_figures(name, change).tolist()
     unit, values, cells = _cells(name, values, max(figures, default=ALL_FIGURES))
     return unit, [
         certain(cell, value, number)
@@ -424,5 +427,6 @@ def _cells(name: str, values: Floats, figures: int) -> tuple[str, Floats, list[s
     if column.values == "time":
         # times are compared with each other: their absolute resolution is a microsecond, also late
         # in a run
-        return scale.unit, values, [fixed(value, 6 if scale.unit == "s" else 3) for value in values]
+        decimals = 6 if scale.unit == "s" else 3
+        return scale.unit, values, [fixed(value, decimals) for value in values]
     return scale.unit, values, column_texts(values, _SIGNIFICANT)

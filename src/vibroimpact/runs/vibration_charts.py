@@ -63,14 +63,13 @@ def sphere_energy_chart(result: Result, history: Mapping[str, Floats], caption: 
     """Return the chart of the sphere's energies: kinetic and potential, and those of its
     modes and rotation that are not negligible.
     """
-    modes = _SPHERE_MODES if "sphere" in result.peaks else ()
-    rows = _SPHERE + tuple(row for row in modes if exceeds_rounding(result, row.columns[0]))
-    time = time_axis(
-        result,
-        views_of_contacts(
-            result, lambda impact: _VISIT * float(result.impacts["duration_s"][impact])
-        ),
+    rows: tuple[Row, ...] = _SPHERE
+    if "sphere" in result.peaks:
+        rows += tuple(row for row in _SPHERE_MODES if exceeds_rounding(result, row.columns[0]))
+    views = views_of_contacts(
+        result, lambda impact: _VISIT * float(result.impacts["duration_s"][impact])
     )
+    time = time_axis(result, views)
     return _chart(result, history, ("sphere_energy", "Energy of the sphere", caption), rows, time)
 
 
