@@ -124,7 +124,7 @@ def values_on(axis: Axis, panels: tuple[Panel, ...]) -> Floats:
     [5.0, 7.0]
     """
     parts = [np.atleast_1d(np.asarray(part, dtype=float)).ravel() for part in _on(axis, panels)]
-    return np.concatenate(parts) if parts else np.empty(0)
+    return np.concatenate([np.empty(0), *parts])
 
 
 def _on(axis: Axis, panels: tuple[Panel, ...]) -> Iterator[Any]:

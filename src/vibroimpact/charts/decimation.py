@@ -126,6 +126,8 @@ def thinned(
     >>> len(x) < 100, float(y.max()), x[np.searchsorted(x, 0.5) + 1].round(6).tolist()
     (True, 1.0, 0.50001)
     """
+    if not len(x):
+        return x, y
     kept = [_needed_points(x, y)]
     for start, end in windows:
         first = int(np.searchsorted(x, start))
@@ -134,7 +136,7 @@ def thinned(
         beyond = np.clip([first - 1, last], 0, len(x) - 1)
         kept += [beyond, first + _needed_points(x[first:last], y[first:last])]
     indices = np.unique(np.concatenate(kept))
-    return (x[indices], y[indices]) if len(x) else (x, y)
+    return x[indices], y[indices]
 
 
 def _needed_points(x: Floats, y: Floats) -> Indices:
@@ -153,9 +155,14 @@ def _needed_points(x: Floats, y: Floats) -> Indices:
     is_gap = np.isnan(y)
     gaps = np.flatnonzero(is_gap)
     points = np.flatnonzero(~is_gap)
-    extremes = points[[np.argmin(y[points]), np.argmax(y[points])]] if len(points) else gaps
-    beside_gaps = np.concatenate([gaps[gaps > 0] - 1, gaps[gaps < count - 1] + 1])
-    fixed = np.unique(np.concatenate([[0, count - 1], spread, gaps, beside_gaps, extremes]))
+    before_gaps = gaps[gaps > 0] - 1
+    after_gaps = gaps[gaps < count - 1] + 1
+    fixed = np.concatenate([[0, count - 1], spread, gaps, before_gaps, after_gaps])
+    if len(points):
+        lowest = points[np.argmin(y[points])]
+        highest = points[np.argmax(y[points])]
+        fixed = np.append(fixed, [lowest, highest])
+    fixed = np.unique(fixed)
     candidates = np.union1d(visible, fixed)
     needed = _bends(x[candidates], y[candidates], np.searchsorted(candidates, fixed))
     return np.asarray(candidates[needed])
@@ -168,7 +175,9 @@ def _bends(x: Floats, y: Floats, fixed: Indices) -> Indices:
     Douglas and Peucker), until no point is farther than a tenth of a pixel.
     """
     finite = np.isfinite(y)
-    tolerance = _FLAT * float(np.ptp(y[finite])) if finite.any() else 0.0
+    tolerance = 0.0
+    if finite.any():
+        tolerance = _FLAT * float(np.ptp(y[finite]))
     kept = set(fixed.tolist())
     chords = list(zip(fixed[:-1].tolist(), fixed[1:].tolist(), strict=True))
     while chords:
@@ -177,8 +186,11 @@ def _bends(x: Floats, y: Floats, fixed: Indices) -> Indices:
             continue
         between = slice(first + 1, last)
         width = x[last] - x[first]
-        part = (x[between] - x[first]) / width if width > 0.0 else 0.0
-        distance = np.abs(y[between] - (y[first] + (y[last] - y[first]) * part))
+        part = np.zeros(last - first - 1)
+        if width > 0.0:
+            part = (x[between] - x[first]) / width
+        chord = y[first] + (y[last] - y[first]) * part
+        distance = np.abs(y[between] - chord)
         farthest = int(np.argmax(distance))
         if distance[farthest] > tolerance:
             bend = first + 1 + farthest

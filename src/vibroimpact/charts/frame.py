@@ -90,6 +90,16 @@ def frames_of(chart: Chart) -> dict[Axis, Frame]:
     return frames
 
 
+def ends_of_range(axis: Axis, frame: Frame) -> list[float | None]:
+    """Return the ends of the given range of an axis as shown; None for one that is left open."""
+    assert axis.range is not None  # checked by the caller
+    ends: list[float | None] = []
+    for end in axis.range:
+        shown = frame.shown(np.array(end)).item()
+        ends.append(shown if np.isfinite(end) else None)
+    return ends
+
+
 def ends_on(axis: Axis, chart: Chart) -> tuple[float, float]:
     """Return the smallest and the largest finite value along an axis; 0 and 1 if there is none.
 
@@ -102,7 +112,9 @@ def ends_on(axis: Axis, chart: Chart) -> tuple[float, float]:
     """
     values = values_on(axis, chart.panels)
     values = values[np.isfinite(values)]
-    return (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
+    if not len(values):
+        return 0.0, 1.0
+    return float(values.min()), float(values.max())
 
 
 def is_log(scale: Axis, chart: Chart) -> bool:
@@ -228,7 +240,9 @@ def _shown_values(panel: Panel, view: View, panels: tuple[Panel, ...]) -> Floats
                 if isinstance(mark, Line | Points | Band):
                     shown = own_view(mark, other, other.x.views[number])
                     parts.append(values_within(mark, shown))
-    return np.concatenate(parts) if parts else np.empty(0)
+    if not parts:
+        return np.empty(0)
+    return np.concatenate(parts)
 
 
 def values_within(mark: Line | Points | Band, view: View) -> Floats:
@@ -241,7 +255,8 @@ def values_within(mark: Line | Points | Band, view: View) -> Floats:
     first = int(np.searchsorted(mark.x, view.start))
     last = int(np.searchsorted(mark.x, view.end, side="right"))
     ends = [end for end in (view.start, view.end) if len(mark.x) and mark.x[0] < end < mark.x[-1]]
+    curves = [mark.low, mark.high] if isinstance(mark, Band) else [mark.y]
     parts = []
-    for values in (mark.low, mark.high) if isinstance(mark, Band) else (mark.y,):
+    for values in curves:
         parts += [values[first:last], np.interp(ends, mark.x, values)]
     return np.concatenate(parts)

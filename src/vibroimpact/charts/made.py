@@ -74,8 +74,10 @@ def made_scene(
 
 def warn_of_lost(name: str, error: Exception) -> str:
     """Warn that a chart could not be drawn, and return the reason."""
-    kind = type(error).__name__
-    reason = shortened(visible(f"{kind}: {error}" if str(error) else kind), _LONGEST_REASON)
+    reason = type(error).__name__
+    if str(error):
+        reason += f": {error}"
+    reason = shortened(visible(reason), _LONGEST_REASON)
     warnings.warn(ChartWarning(f"the chart {name} could not be drawn: {reason}"), stacklevel=2)
     return reason
 

@@ -352,8 +352,12 @@ def upwards(mark: Mark) -> Iterator[Any]:
 
 
 def _of_bars(bars: Bars) -> Iterator[Any]:
-    yield bars.values if bars.base is None else bars.base + bars.values
-    yield from (part for part in (bars.base, bars.low, bars.high) if part is not None)
+    if bars.base is None:
+        yield bars.values
+    else:
+        yield bars.base
+        yield bars.base + bars.values
+    yield from (end for end in (bars.low, bars.high) if end is not None)
 
 
 def stack_edges(stack: Stack) -> list[Floats]:

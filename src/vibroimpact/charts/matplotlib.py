@@ -28,6 +28,7 @@ from vibroimpact.charts.frame import (
 from vibroimpact.charts.marks import (
     Label,
     Level,
+    Mark,
     Points,
 )
 from vibroimpact.charts.print_axes import plain_log, set_axis
@@ -126,7 +127,9 @@ def matplotlib_figure(chart: Chart, figure: Figure | None = None) -> Figure:
     if isinstance(chart, StoredChart):
         raise InputError(f"the chart {chart.name} was stored as drawn for a page alone")
     with print_style():
-        return _Print(chart).figure(Figure() if figure is None else figure)
+        if figure is None:
+            figure = Figure()
+        return _Print(chart).figure(figure)
 
 
 class _Print:
@@ -142,9 +145,12 @@ class _Print:
     def figure(self, figure: Figure) -> Figure:
         """Draw into a figure, and return it."""
         rows = self.chart.rows
-        views_below = self.chart.views[:_MOST_ENLARGED] if len(rows) == 1 else ()
         heights = [self._height(row) for row in rows]
-        views_height = _ENLARGED_ROW if views_below else 0.0
+        views_below: tuple[View, ...] = ()
+        views_height = 0.0
+        if len(rows) == 1 and self.chart.views:
+            views_below = self.chart.views[:_MOST_ENLARGED]
+            views_height = _ENLARGED_ROW
         figure.set_size_inches(WIDTH, sum(heights) + views_height + 0.55)
         figure.set_layout_engine("constrained")
         rows_part: Any = figure
@@ -175,16 +181,13 @@ class _Print:
             counts = [most] * len(rows)
         # a common grid, where there is one, aligns the rows, and lets all maps share one colour bar
         has_common_grid = all(most % count == 0 for count in counts)
-        grid = part.add_gridspec(len(rows), most if has_common_grid else 1, height_ratios=heights)
+        columns = most if has_common_grid else 1
+        grid = part.add_gridspec(len(rows), columns, height_ratios=heights)
         for number, (row, row_views, count) in enumerate(zip(rows, views, counts, strict=True)):
             if has_common_grid:
-                width = most // count
-                cells = [
-                    grid[number, width * column : width * (column + 1)] for column in range(count)
-                ]
+                cells = _equal_cells(grid, number, most // count, count)
             else:
-                row_grid = grid[number, 0].subgridspec(1, count)
-                cells = [row_grid[0, column : column + 1] for column in range(count)]
+                cells = _equal_cells(grid[number, 0].subgridspec(1, count), 0, 1, count)
             lowest = number == len(rows) - 1 or not self._aligned()
             self._row(part, row, cells[: len(row)], lowest=lowest)
             for cell, (panel, view) in zip(cells[len(row) :], row_views, strict=False):
@@ -198,7 +201,9 @@ class _Print:
         rows = len(self.chart.rows)
         if rows == 1:
             return 0
-        return _MOST_BESIDE if rows == 2 and self._aligned() else 1
+        if rows == 2 and self._aligned():
+            return _MOST_BESIDE
+        return 1
 
     def _row(self, part: Any, row: tuple[Panel, ...], cells: list[Any], *, lowest: bool) -> None:
         """Draw the panels of a row into cells of a grid."""
@@ -224,8 +229,11 @@ class _Print:
         else:
             usual = _ROW if is_only_row else _SMALL_ROW
         if self._pictures():
-            return self._picture_height(row, usual if is_only_row else _LARGEST_PICTURE_ROW)
-        return usual if is_only_row or self._aligned() else max(usual, 2.1)
+            largest = usual if is_only_row else _LARGEST_PICTURE_ROW
+            return self._picture_height(row, largest)
+        if is_only_row or self._aligned():
+            return usual
+        return max(usual, 2.1)  # each row has the title of its own horizontal axis
 
     def _picture_height(self, row: tuple[Panel, ...], largest: float) -> float:
         """Return the height of a row of pictures with their words [in]."""
@@ -238,8 +246,10 @@ class _Print:
         has_words_below = len(self.chart.rows) == 1 or any(
             isinstance(mark, Label) and mark.corner for panel in row for mark in panel.marks
         )
-        phrase = _PICTURE_TITLE + (_PICTURE_WORDS if has_words_below else 0.0)
-        return min(max(*heights, _LEAST_PICTURE) + phrase, largest)
+        height_of_words = _PICTURE_TITLE
+        if has_words_below:
+            height_of_words += _PICTURE_WORDS
+        return min(max(*heights, _LEAST_PICTURE) + height_of_words, largest)
 
     def _pictures(self) -> bool:
         """Return whether all panels are pictures."""
@@ -253,14 +263,9 @@ class _Print:
         grid = part.add_gridspec(1, len(views))
         _, named = view_frames(panel, views[0], self.frames[panel.y], self.chart.panels)
         for number, view in enumerate(views):
-            self._view(
-                part.add_subplot(grid[0, number]),
-                panel,
-                view,
-                len(views),
-                named if number else None,
-                lowest=True,
-            )
+            axes = part.add_subplot(grid[0, number])
+            beside = named if number else None
+            self._view(axes, panel, view, len(views), beside, lowest=True)
         self._label_once(part)
 
     def _titles(self, figure: Figure) -> None:
@@ -287,11 +292,13 @@ class _Print:
     def _same_ranges(self) -> None:
         """Give the panels that have the same axis its range."""
         for (_, side), some in self.drawn.items():
+            if len(some) == 1:
+                continue
             limits = [getattr(axes, f"get_{side}lim")() for axes in some]
-            for axes in some if len(some) > 1 else ():
-                getattr(axes, f"set_{side}lim")(
-                    min(low for low, _ in limits), max(high for _, high in limits)
-                )
+            lowest = min(low for low, _ in limits)
+            highest = max(high for _, high in limits)
+            for axes in some:
+                getattr(axes, f"set_{side}lim")(lowest, highest)
 
     def _label_once(self, part: Any) -> None:
         """Replace equal labels of the x axes of a row by one below all of them."""
@@ -318,20 +325,23 @@ class _Print:
         label; None if there is none.
         """
         across, up = view_frames(panel, view, self.frames[panel.y], self.chart.panels)
+        # "Time since first touch of impact 1" is too long below a narrow view, whose title has the
+        # number of the impact
         since = across.label.removeprefix("Time ").partition(" of ")[0]
-        short = Frame(since[:1].upper() + since[1:], across.unit, across.size, across.origin)
+        label = since[:1].upper() + since[1:]
+        short = replace(across, label=label)
         self._panel(axes, panel, short, up, view, lowest=lowest, labelled=beside is None)
         has_unit = (
             beside is None or up.unit == beside.unit or view.headline.split()[-1:] == [up.unit]
         )
-        unit = "" if has_unit else f"[{up.unit}]"
+        title = "" if has_unit else f"[{up.unit}]"
         # the upper row names the view and what it is about
-        upper = panel in self.chart.rows[0] or not view.headline
-        title = _title(view, unit, int((WIDTH / columns - _NUMBERS) / _LETTER)) if upper else unit
-        axes.set_title(
-            "\n".join(lettering(line) for line in title.splitlines()),
-            fontsize=8.0 if columns > _MOST_BESIDE else 8.5,
-        )
+        if panel in self.chart.rows[0] or not view.headline:
+            most_letters = int((WIDTH / columns - _NUMBERS) / _LETTER)
+            title = _title(view, title, most_letters)
+        lines = [lettering(line) for line in title.splitlines()]
+        size = 8.0 if columns > _MOST_BESIDE else 8.5
+        axes.set_title("\n".join(lines), fontsize=size)
 
     def _panel(
         self,
@@ -345,26 +355,10 @@ class _Print:
         labelled: bool = True,
     ) -> None:
         """Draw a panel in its frames, the whole of it or a view."""
-        span = None if view is None else view_range(panel, view, self.chart.panels)
-        for order, mark in enumerate(panel.marks):
-            if (
-                isinstance(mark, Level)
-                and not mark.upright
-                and span
-                and not span[0] <= mark.value <= span[1]
-            ):
-                continue
-            frames = (across, up)
-            inside = (-np.inf, np.inf)
-            if view is not None:
-                own = own_view(mark, panel, view)
-                frames = (replace(across, origin=own.origin), up)
-                inside = (own.start, own.end)
-            before = set(axes.get_children())
-            self.marks.draw(axes, mark, panel, frames, inside)
-            # in a picture what is drawn later covers what was drawn before, lines too
-            for artist in set(axes.get_children()) - before if panel.picture else ():
-                artist.set_zorder(2.0 + 0.001 * order)
+        span = None
+        if view is not None:
+            span = view_range(panel, view, self.chart.panels)
+        self._marks(axes, panel, (across, up), view, span)
         if panel.picture:
             axes.set_axis_off()
             axes.set_aspect("equal", anchor="N")  # the titles of a row in a line
@@ -373,6 +367,7 @@ class _Print:
             has_symbols = any(
                 isinstance(mark, Points) or getattr(mark, "marked", False) for mark in panel.marks
             )
+            # symbols at the ends are wider than lines, and are not to be cut
             axes.margins(x=0.03 if has_symbols else 0.01, y=0.08)
             set_axis(axes, "x", panel.x, across)
             set_axis(axes, "y", panel.y, up)
@@ -381,32 +376,54 @@ class _Print:
             if span is not None:
                 axes.set_ylim(*up.shown(np.array(span)))
             axes.tick_params(labelbottom=lowest)
-            axes.set_xlabel(lettering(across.title) if lowest else "")
-            labelled = labelled and panel not in self.unlabelled
-            if labelled:
-                axes.set_ylabel(lettering(up.title) if up.label else up.unit)
-        if view is None and panel.marks:
+            if lowest:
+                axes.set_xlabel(lettering(across.title))
+            if labelled and panel not in self.unlabelled:
+                label = lettering(up.title) if up.label else up.unit
+                axes.set_ylabel(label)
+        if view is not None:
+            return
+        if panel.marks:
             self.drawn.setdefault((panel.x, "x"), []).append(axes)
             self.drawn.setdefault((panel.y, "y"), []).append(axes)
-        title = panel.title if panel.title != self.chart.title else ""
-        if title and view is None:
-            axes.set_title(
-                lettering(title, 70), fontsize=8.5 if len(self.chart.panels) > 1 else 9.5
-            )
+        if panel.title and panel.title != self.chart.title:
+            size = 8.5 if len(self.chart.panels) > 1 else 9.5
+            axes.set_title(lettering(panel.title, 70), fontsize=size)
+
+    def _marks(
+        self,
+        axes: Axes,
+        panel: Panel,
+        frames: tuple[Frame, Frame],
+        view: View | None,
+        span: tuple[float, float] | None,
+    ) -> None:
+        """Draw the marks of a panel, but for levels beyond the vertical span of a view."""
+        across, up = frames
+        inside = (-np.inf, np.inf)
+        for order, mark in enumerate(panel.marks):
+            if span is not None and _is_level_beyond(mark, span):
+                continue
+            if view is not None:
+                own = own_view(mark, panel, view)
+                across = replace(across, origin=own.origin)
+                inside = (own.start, own.end)
+            before = set(axes.get_children())
+            self.marks.draw(axes, mark, panel, (across, up), inside)
+            if panel.picture:
+                # what is drawn later covers what was drawn before, lines too
+                for artist in set(axes.get_children()) - before:
+                    artist.set_zorder(2.0 + 0.001 * order)
 
     def _colour_bars(self, figure: Figure, part: Any) -> None:
         for scale, (picture, axes) in self.marks.scales.items():
             frame = self.frames[scale]
+            look: dict[str, Any] = {"location": "right", "shrink": 1.0, "aspect": 25}
             if len(axes) > 1:
                 figure.set_size_inches(WIDTH, figure.get_figheight() + _COLOUR_BAR)
-            bar = part.colorbar(
-                picture,
-                ax=axes,
-                panchor=False,  # the maps stay where they are in their cells
-                location="bottom" if len(axes) > 1 else "right",
-                shrink=0.5 if len(axes) > 1 else 1.0,
-                aspect=40 if len(axes) > 1 else 25,
-            )
+                look = {"location": "bottom", "shrink": 0.5, "aspect": 40}
+            # the maps stay where they are in their cells
+            bar = part.colorbar(picture, ax=axes, panchor=False, **look)
             bar.set_label(lettering(frame.title), fontsize=8)
             bar.ax.tick_params(labelsize=7.5)
             if scale.log and isinstance(picture.norm, LogNorm):
@@ -426,6 +443,18 @@ class _Print:
             ncols=columns,
             handlelength=3.2,
         )
+
+
+def _is_level_beyond(mark: Mark, span: tuple[float, float]) -> bool:
+    if not isinstance(mark, Level) or mark.upright:
+        return False
+    return not span[0] <= mark.value <= span[1]
+
+
+def _equal_cells(grid: Any, row: int, width: int, count: int) -> list[Any]:
+    """Return cells side by side in a row of a grid, each of a width in columns."""
+    starts = range(0, width * count, width)
+    return [grid[row, start : start + width] for start in starts]
 
 
 def _title(view: View, unit: str, most: int) -> str:
@@ -454,5 +483,7 @@ def _title(view: View, unit: str, most: int) -> str:
         return name
     if len(name) + 2 + len(view.headline) <= most:
         return f"{name}: {view.headline}"
-    headline = view.headline if len(view.headline) <= most else view.headline.rsplit(" ", 1)[-1]
-    return f"{name}\n{headline}"
+    if len(view.headline) <= most:
+        return f"{name}\n{view.headline}"
+    # the quantity at its end matters most
+    return f"{name}\n{view.headline.rsplit(' ', 1)[-1]}"

@@ -61,7 +61,9 @@ def plotly_figure(chart: Chart) -> go.Figure:
     drawn = plotly_chart(chart)
     title = {"text": plain(drawn["title"]), "subtitle": {"text": plain(drawn["subtitle"])}}
     layout = drawn["layout"] | {"title": title, "template": "plotly_white", "hovermode": "closest"}
-    above = 70 + (16 * len(chart.subtitle.splitlines()) + 14 if chart.subtitle else 0)
+    above = 70
+    if chart.subtitle:
+        above += 16 * len(chart.subtitle.splitlines()) + 14
     layout |= {
         "shapes": [*_levels(drawn), *_spans(drawn), *_rugs(drawn)],
         "margin": {"t": above, "b": 60},
@@ -103,8 +105,10 @@ def _traces(trace: dict[str, Any], frames: dict[str, dict[str, Any]]) -> list[di
         case "bars":
             return [_bars(trace, x, y, common)]
         case "heatmap" | "contour":
-            texts = {"text": np.reshape(trace["text"], trace["z"].shape)} if "text" in trace else {}
-            return [{**trace, **texts, "x": _shown(trace["x"], x), "y": _shown(trace["y"], y)}]
+            shown = {**trace, "x": _shown(trace["x"], x), "y": _shown(trace["y"], y)}
+            if "text" in trace:
+                shown["text"] = np.reshape(trace["text"], trace["z"].shape)
+            return [shown]
     kept = {
         key: value
         for key, value in trace.items()
@@ -137,7 +141,10 @@ def hover(across: str, up: str, texts: bool) -> str:
     >>> hover("ms", "kN", False)
     '%{x:.7~g} ms<br>%{y:.5~g} kN'
     """
-    return f"{'%{text}<br>' if texts else ''}%{{x:.7~g}} {across}<br>%{{y:.5~g}} {up}"
+    coordinates = f"%{{x:.7~g}} {across}<br>%{{y:.5~g}} {up}"
+    if not texts:
+        return coordinates
+    return f"%{{text}}<br>{coordinates}"
 
 
 def _name_of(trace: dict[str, Any]) -> str:
@@ -185,6 +192,7 @@ def _stack(
 def _bars(
     trace: dict[str, Any], x: dict[str, Any], y: dict[str, Any], common: dict[str, Any]
 ) -> dict[str, Any]:
+    place, value = ("y", "x") if trace["lying"] else ("x", "y")
     along, across = (y, x) if trace["lying"] else (x, y)
     places = _shown(trace["places"], along)
     values = trace["values"] / across["size"]
@@ -201,23 +209,20 @@ def _bars(
             "array": (trace["high"] - trace["values"]) / across["size"],
             "arrayminus": (trace["values"] - trace["low"]) / across["size"],
         }
-        bars["error_x" if trace["lying"] else "error_y"] = {
+        bars[f"error_{value}"] = {
             **error,
             "thickness": 1.0,
             "width": 3,
             "color": "@main",
         }
+    what = f"%{{{place}:.5~g}} {along['unit']}"
     if "text" in trace:
         bars["hovertext"] = trace["text"]  # as "text" it would be written on the bars
-    place, value = ("y", "x") if trace["lying"] else ("x", "y")
-    what = "%{hovertext}" if "text" in trace else f"%{{{place}:.5~g}} {along['unit']}"
+        what = "%{hovertext}"
     bars["hovertemplate"] = f"{what}<br>%{{{value}:.5~g}} {across['unit']}" + _name_of(trace)
-    return {
-        **bars,
-        **common,
-        "x": values if trace["lying"] else places,
-        "y": places if trace["lying"] else values,
-    }
+    if trace["lying"]:
+        return {**bars, **common, "x": values, "y": places}
+    return {**bars, **common, "x": places, "y": values}
 
 
 def _levels(drawn: dict[str, Any]) -> list[dict[str, Any]]:
@@ -226,16 +231,16 @@ def _levels(drawn: dict[str, Any]) -> list[dict[str, Any]]:
         frame = drawn["frames"][level["axis"]]
         place = float(_shown(np.array(level["value"]), frame))
         along = level["axis"][0]
-        if along == "x":
-            ends = {"xref": level["axis"], "x0": place, "x1": place}
-        else:
-            ends = {"yref": level["axis"], "y0": place, "y1": place}
-        across = f"{level['across']} domain"
-        ends |= (
-            {"yref": across, "y0": 0, "y1": 1}
-            if along == "x"
-            else {"xref": across, "x0": 0, "x1": 1}
-        )
+        across = level["across"][0]
+        # the line crosses the whole panel along the other axis
+        ends = {
+            f"{along}ref": level["axis"],
+            f"{along}0": place,
+            f"{along}1": place,
+            f"{across}ref": f"{level['across']} domain",
+            f"{across}0": 0,
+            f"{across}1": 1,
+        }
         shapes.append(
             {
                 "type": "line",

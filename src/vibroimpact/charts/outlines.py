@@ -54,7 +54,9 @@ def strip(
     """
     normal, end = edge.split("-")
     # ends of the plate in the direction of the normal to the edge, and along the edge
-    (low, high), edge_ends = (across, up) if normal == "x" else (up, across)
+    (low, high), edge_ends = across, up
+    if normal == "y":
+        (low, high), edge_ends = up, across
     if end == "min":
         outer = low
         inner = low + wide

@@ -81,7 +81,9 @@ class _Packing:
             return [self._plain(item) for item in part]
         if isinstance(part, np.generic):
             part = part.item()
-        return None if isinstance(part, float) and not math.isfinite(part) else part
+        if isinstance(part, float) and not math.isfinite(part):
+            return None  # JSON has no such numbers
+        return part
 
     def _array(self, array: NDArray[Any]) -> dict[str, Any]:
         """Return the reference to an array, which is stored if it is new."""
@@ -89,8 +91,9 @@ class _Packing:
             even = _even(array)
             if even is None:
                 data = _narrowed(array)
-                shape = [array.size] if array.ndim == 1 else [array.size, array.shape[-1]]
-                entry = [data.dtype.str[1:], self._add(data.tobytes()), *shape]
+                entry = [data.dtype.str[1:], self._add(data.tobytes()), array.size]
+                if array.ndim > 1:
+                    entry.append(array.shape[-1])
             else:
                 first, step = even
                 entry = ["even", first, step, array.size]
@@ -174,12 +177,16 @@ def _stored(
     if kind == "texts":
         return parse_json(block[start : start + length])
     values = np.frombuffer(block, f"<{kind}", count=length, offset=start)
-    return values.reshape(-1, *more) if more and len(values) else values
+    if more and len(values):
+        return values.reshape(-1, *more)
+    return values
 
 
 def _even(array: NDArray[Any]) -> tuple[float, float] | None:
     """Return the first value and the step of evenly spaced values; None if they are not."""
-    if array.ndim != 1 or len(array) < 3 or array.dtype.kind != "f" or not np.isfinite(array).all():
+    if array.ndim != 1 or len(array) < 3:
+        return None
+    if array.dtype.kind != "f" or not np.isfinite(array).all():
         return None
     first = float(array[0])
     step = float(array[-1] - array[0]) / (len(array) - 1)
@@ -188,9 +195,12 @@ def _even(array: NDArray[Any]) -> tuple[float, float] | None:
     # most arrays differ at the first step already
     if abs(float(array[1] - array[0]) - step) > _EVEN * abs(step) * 1e3:
         return None
-    deviation = float(np.abs(array - (first + step * np.arange(len(array)))).max())
+    even = first + step * np.arange(len(array))
+    deviation = float(np.abs(array - even).max())
     rounding = 1e-15 * abs(float(array[-1]))
-    return (first, step) if deviation <= max(_EVEN * abs(step), rounding) else None
+    if deviation <= max(_EVEN * abs(step), rounding):
+        return first, step
+    return None
 
 
 def _narrowed(array: NDArray[Any]) -> NDArray[Any]:

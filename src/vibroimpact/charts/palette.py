@@ -165,4 +165,5 @@ def series(number: int) -> str:
     >>> series(0), series(9)
     ('series 0', 'thin series 1')
     """
-    return f"{'' if number < SERIES else 'thin '}series {number % SERIES}"
+    role = f"series {number % SERIES}"
+    return role if number < SERIES else f"thin {role}"

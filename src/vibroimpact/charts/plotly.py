@@ -16,7 +16,7 @@ import numpy as np
 
 from vibroimpact.charts.axis import Axis, View
 from vibroimpact.charts.chart import Chart, Panel, StoredChart, values_on
-from vibroimpact.charts.contours import contours_of
+from vibroimpact.charts.contours import Contours, contours_of
 from vibroimpact.charts.frame import (
     Frame,
     ends_on,
@@ -205,10 +205,11 @@ class _Drawing:
             pixels = _PICTURE_INCH if self._pictures() else 96.0
             return [round(pixels * self.chart.height)] * len(self.chart.rows)
         usual = ROW if len(self.chart.rows) == 1 else SMALL_ROW
-        return [
-            PICTURE_ROW if any(panel.picture for panel in row) and len(row) < 3 else usual
-            for row in self.chart.rows
-        ]
+        heights = [usual] * len(self.chart.rows)
+        for number, row in enumerate(self.chart.rows):
+            if any(panel.picture for panel in row) and len(row) < 3:
+                heights[number] = PICTURE_ROW
+        return heights
 
     def _pictures(self) -> bool:
         """Return whether all panels are pictures, whose height follows from the width."""
@@ -233,14 +234,17 @@ class _Drawing:
             else:
                 first[axis] = name
             shared_below = side == "x" and not last and bool(axis.views)
-            line["title"] = {"text": "" if shared_below or panel.picture else plain(frame.title)}
-            line |= {"showticklabels": False} if shared_below else {}
+            is_untitled = shared_below or panel.picture
+            title = "" if is_untitled else plain(frame.title)
+            line["title"] = {"text": title}
+            if shared_below:
+                line["showticklabels"] = False
             line |= scale_of(axis, frame)
             if panel.picture:
+                line["visible"] = False
                 # an axis that follows another one has its scale already
-                line |= {"visible": False} | (
-                    {"scaleanchor": f"x{suffix}"} if side == "y" and "matches" not in line else {}
-                )
+                if side == "y" and "matches" not in line:
+                    line["scaleanchor"] = f"x{suffix}"
             self.layout[f"{side}axis{suffix}"] = line
         if panel.title and (len(self.chart.panels) > 1 or panel.title != self.chart.title):
             self._write(
@@ -290,21 +294,7 @@ class _Drawing:
                     },
                 )
             case Stack():
-                for layer in mark.layers:
-                    self.named.add((layer.name, layer.role))
-                layers = [
-                    {"name": plain(layer.name), "y": layer.values, **area(layer.role)}
-                    for layer in mark.layers
-                ]
-                self.data.append(
-                    {
-                        "type": "stack",
-                        "x": mark.x,
-                        "layers": layers,
-                        **({} if mark.overview is None else {"overview": mark.overview}),
-                        **at,
-                    }
-                )
+                self._stack(mark, at)
             case Bars():
                 self._add(mark, at, bars_trace(mark))
             case Map():
@@ -329,15 +319,7 @@ class _Drawing:
                     },
                 )
             case Level():
-                self.levels.append(
-                    {
-                        "axis": f"{'x' if mark.upright else 'y'}{suffix}",
-                        "across": f"{'y' if mark.upright else 'x'}{suffix}",
-                        "value": mark.value,
-                        "line": pen(mark.role),
-                        "label": plain(mark.label),
-                    }
-                )
+                self._level(mark, suffix)
                 self._name(mark, at)
             case Spans():
                 look = LOOKS[mark.role]
@@ -367,6 +349,28 @@ class _Drawing:
                 self._label(mark, panel, suffix)
             case Arrow():
                 self._arrow(mark, panel, suffix)
+
+    def _stack(self, mark: Stack, at: dict[str, str]) -> None:
+        layers = []
+        for layer in mark.layers:
+            self.named.add((layer.name, layer.role))
+            layers.append({"name": plain(layer.name), "y": layer.values, **area(layer.role)})
+        stack: dict[str, Any] = {"type": "stack", "x": mark.x, "layers": layers}
+        if mark.overview is not None:
+            stack["overview"] = mark.overview
+        self.data.append({**stack, **at})
+
+    def _level(self, mark: Level, suffix: str) -> None:
+        axis, across = ("x", "y") if mark.upright else ("y", "x")
+        self.levels.append(
+            {
+                "axis": f"{axis}{suffix}",
+                "across": f"{across}{suffix}",
+                "value": mark.value,
+                "line": pen(mark.role),
+                "label": plain(mark.label),
+            }
+        )
 
     def _label(self, mark: Label, panel: Panel, suffix: str) -> None:
         """Write words at a position of a panel, or at a part of its width and height."""
@@ -445,44 +449,33 @@ class _Drawing:
                 "text": [plain(text) for text in mark.texts],
                 "hovertemplate": "%{text}<extra></extra>",
             }
-        self.data.append(
-            {**trace, **({} if mark.cells else {"zsmooth": "best"}), **at, "showlegend": False}
-        )
-        for contours in contours_of(shown) if mark.contours else ():
-            lines = {
-                "type": "contour",
-                "x": mark.x,
-                "y": mark.y,
-                "z": contours.values,
-                "showscale": False,
-                "hoverinfo": "skip",
-            }
-            step = contours.levels[1] - contours.levels[0] if len(contours.levels) > 1 else 1.0
-            # the end lies beyond the last level, which rounding would leave out
-            levels = {
-                "coloring": "none",
-                "start": contours.levels[0],
-                "end": contours.levels[-1] + 0.01 * step,
-                "size": step,
-            }
-            pen = {
-                "color": "@contour",
-                "width": 1.2 * contours.width,
-                "dash": "4px,3px" if contours.dashed else "solid",
-            }
-            self.data.append({**lines, "contours": levels, "line": pen, "showlegend": False, **at})
+        if not mark.cells:
+            trace["zsmooth"] = "best"
+        self.data.append({**trace, **at, "showlegend": False})
+        if mark.contours:
+            for contours in contours_of(shown):
+                self.data.append({**_contour_trace(mark, contours), **at})
 
     def _add_scale(self, mark: Map | Facets, frame: Frame) -> None:
         """Add the colour scale that maps or facets share."""
         assert mark.scale is not None  # checked by the caller
-        name = f"coloraxis{'' if not self.scales else len(self.scales) + 1}"
+        # plotly counts them coloraxis, coloraxis2, and so on
+        name = "coloraxis"
+        if self.scales:
+            name += str(len(self.scales) + 1)
         self.scales[mark.scale] = name
         log = is_log(mark.scale, self.chart)
         low, high = frame.shown(np.array(ends_on(mark.scale, self.chart))).tolist()
         if log:
             low = math.log10(low)
             high = math.log10(high)
-        largest = max(abs(low), abs(high)) or 1.0
+        stops = SEQUENTIAL
+        ends = (low, high)
+        if mark.diverging:
+            # the middle colour of a diverging scale stands for zero
+            stops = DIVERGING
+            largest = max(abs(low), abs(high)) or 1.0
+            ends = (-largest, largest)
         bar: dict[str, Any] = {
             "title": {"text": plain(frame.title), "side": "right"},
             "thickness": 12,
@@ -490,8 +483,9 @@ class _Drawing:
             "len": 1.0,
         }
         if log:
-            powers = np.arange(np.ceil(low), np.floor(high) + 1.0)
-            ticks = powers if len(powers) > 1 else np.linspace(low, high, 3)
+            ticks = np.arange(np.ceil(low), np.floor(high) + 1.0)
+            if len(ticks) < 2:  # less than a decade
+                ticks = np.linspace(low, high, 3)
             bar |= {
                 "tickvals": ticks.tolist(),
                 "ticktext": [f"{10.0**value:.3g}" for value in ticks],
@@ -504,9 +498,9 @@ class _Drawing:
         if len(panels_with_maps) > 1 and self._own_scale(mark.scale):
             bar |= self._beside(mark.scale)
         self.layout[name] = {
-            "cmin": -largest if mark.diverging else low,
-            "cmax": largest if mark.diverging else high,
-            "colorscale": [list(stop) for stop in (DIVERGING if mark.diverging else SEQUENTIAL)],
+            "cmin": ends[0],
+            "cmax": ends[1],
+            "colorscale": [list(stop) for stop in stops],
             "colorbar": bar,
         }
 
@@ -537,7 +531,9 @@ class _Drawing:
 
         Its outlines are interrupted by NaN.
         """
-        values = mark.values if mark.scale is None else values_on(mark.scale, self.chart.panels)
+        values = mark.values
+        if mark.scale is not None:
+            values = values_on(mark.scale, self.chart.panels)
         low = float(values.min())
         high = float(values.max())
         if mark.diverging:
@@ -642,6 +638,32 @@ class _Drawing:
 def _has_scale(panel: Panel, scale: Axis) -> bool:
     """Return whether a panel has a map or facets of a scale."""
     return any(getattr(mark, "scale", None) is scale for mark in panel.marks)
+
+
+def _contour_trace(mark: Map, contours: Contours) -> dict[str, Any]:
+    """Return the trace of contours of a map that look alike."""
+    step = 1.0
+    if len(contours.levels) > 1:
+        step = contours.levels[1] - contours.levels[0]
+    levels = {
+        "coloring": "none",
+        "start": contours.levels[0],
+        # it lies beyond the last level, which rounding would leave out
+        "end": contours.levels[-1] + 0.01 * step,
+        "size": step,
+    }
+    dash = "4px,3px" if contours.dashed else "solid"
+    return {
+        "type": "contour",
+        "x": mark.x,
+        "y": mark.y,
+        "z": contours.values,
+        "showscale": False,
+        "hoverinfo": "skip",
+        "contours": levels,
+        "line": {"color": "@contour", "width": 1.2 * contours.width, "dash": dash},
+        "showlegend": False,
+    }
 
 
 def _as_dict(frame: Frame) -> dict[str, Any]:

@@ -10,18 +10,16 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from vibroimpact.charts.axis import Axis
-from vibroimpact.charts.frame import (
-    Frame,
-)
+from vibroimpact.charts.frame import Frame, ends_of_range
 from vibroimpact.charts.print_style import lettering
 
 
 def set_axis(axes: Axes, side: str, axis: Axis, frame: Frame) -> None:
     """Set scale, range and ticks of an axis."""
-    line = axes.xaxis if side == "x" else axes.yaxis
-    set_limits = axes.set_xlim if side == "x" else axes.set_ylim
+    line = getattr(axes, f"{side}axis")
+    set_limits = getattr(axes, f"set_{side}lim")
     if axis.log:
-        (axes.set_xscale if side == "x" else axes.set_yscale)("log")
+        getattr(axes, f"set_{side}scale")("log")
     if axis.names:
         line.set_ticks(range(len(axis.names)), [lettering(name, 30) for name in axis.names])
         set_limits(-0.6, len(axis.names) - 0.4)
@@ -29,11 +27,7 @@ def set_axis(axes: Axes, side: str, axis: Axis, frame: Frame) -> None:
             for text in line.get_ticklabels():
                 text.set(rotation=20, ha="right", rotation_mode="anchor")
     if axis.range is not None:
-        ends = [
-            None if not math.isfinite(end) else float(frame.shown(np.array(end)))
-            for end in axis.range
-        ]
-        set_limits(*ends)
+        set_limits(*ends_of_range(axis, frame))
     if axis.log:
         plain_log(line)
     elif axis.ticks:
@@ -59,8 +53,9 @@ def plain_log(line: Any) -> None:
     the decades if there are many.
     """
     low, high = sorted(line.get_view_interval())
-    decades = math.log10(high / low) if low > 0.0 else 9.0
-    line.set_major_locator(LogLocator(10.0, subs=(1.0, 2.0, 5.0) if decades < 2.2 else (1.0,)))
+    decades = math.log10(high / low) if low > 0.0 else math.inf
+    steps = (1.0, 2.0, 5.0) if decades < 2.2 else (1.0,)
+    line.set_major_locator(LogLocator(10.0, subs=steps))
     if decades < 5.0:
         line.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.6g}"))
     line.set_minor_formatter(NullFormatter())

@@ -133,9 +133,9 @@ class PrintedMarks:
             case Level():
                 self._level(axes, mark, x, y)
             case Spans():
-                is_view = np.isfinite(inside[0])
-                shown = inside if is_view else ends_on(panel.x, self.chart)
-                self._spans(axes, mark, x, shown)
+                if not np.isfinite(inside[0]):  # the whole of the axis, not a view
+                    inside = ends_on(panel.x, self.chart)
+                self._spans(axes, mark, x, inside)
             case Rug():
                 self._rug(axes, mark, x)
             case Label():
@@ -223,8 +223,10 @@ class PrintedMarks:
 
     def _label(self, axes: Axes, mark: Label, x: Frame, y: Frame) -> None:
         if mark.corner:
+            coordinates = "axes fraction"
             position = (mark.x, mark.y)
         else:
+            coordinates = "data"
             position = (_position(x, mark.x), _position(y, mark.y))
             # which matplotlib does not do for words and arrows
             axes.update_datalim([position])
@@ -233,7 +235,7 @@ class PrintedMarks:
             lettering(mark.words, 120),
             position,
             offset,
-            "axes fraction" if mark.corner else "data",
+            coordinates,
             "offset points",
             ha=horizontal,
             va=vertical,
@@ -388,11 +390,9 @@ class PrintedMarks:
             norm = Normalize(low, high)
         stops = DIVERGING if mark.diverging else SEQUENTIAL
         colours = LinearSegmentedColormap.from_list("scale", list(stops))
-        axes.patch.set(
-            facecolor="#f2f2f2",
-            edgecolor="#9a9a9a",
-            hatch="" if np.isfinite(values).all() or not mark.cells else "xxxx",
-        )
+        axes.patch.set(facecolor="#f2f2f2", edgecolor="#9a9a9a")
+        if mark.cells and not np.isfinite(values).all():
+            axes.patch.set_hatch("xxxx")  # seen through cells without a value
         across = x.shown(mark.x)
         up = y.shown(mark.y)
         if mark.cells:
@@ -427,6 +427,7 @@ class PrintedMarks:
             picture.set_clip_path(map_area)
         if mark.contours:
             for contours in contours_of(values):
+                style = "--" if contours.dashed else "-"
                 axes.contour(
                     across,
                     up,
@@ -434,7 +435,7 @@ class PrintedMarks:
                     levels=contours.levels,
                     colors="#1b1b1b",
                     linewidths=contours.width,
-                    linestyles="--" if contours.dashed else "-",
+                    linestyles=style,
                 )
         self.scales.setdefault(mark.scale, (picture, []))[1].append(axes)
 
@@ -485,11 +486,15 @@ def within(x: Floats, y: Floats, inside: tuple[float, float]) -> tuple[Floats, F
     start, end = inside
     if not np.isfinite(start) or not bool(np.all(np.diff(x) >= 0.0)):
         return x, y
+
+    def is_inside(position: float) -> bool:
+        return len(x) > 0 and bool(x[0] < position < x[-1])
+
     first = np.searchsorted(x, start)
     last = np.searchsorted(x, end, side="right")
     # at the ends of the range, unless the line begins or ends inside it
-    begin_x = [start] if len(x) and x[0] < start < x[-1] else []
-    end_x = [end] if len(x) and x[0] < end < x[-1] else []
+    begin_x = [start] if is_inside(start) else []
+    end_x = [end] if is_inside(end) else []
     across = np.concatenate([begin_x, x[first:last], end_x])
     up = np.concatenate([np.interp(begin_x, x, y), y[first:last], np.interp(end_x, x, y)])
     return across, up

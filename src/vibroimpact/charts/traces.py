@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Panel
-from vibroimpact.charts.frame import Frame
+from vibroimpact.charts.frame import Frame, ends_of_range
 from vibroimpact.charts.marks import Bars, Line, Points
 from vibroimpact.charts.palette import LOOKS, MANY
 
@@ -30,49 +30,60 @@ def line_trace(line: Line) -> dict[str, Any]:
     opacity = LOOKS[line.role].line_opacity
     if opacity < 1.0:
         drawn["opacity"] = opacity
-    drawn |= {"origins": list(line.origins)} if line.origins else {}
-    return drawn | ({"marker": _symbol(line.role, 5)} if line.marked else {}) | _texts(line.texts)
+    if line.origins:
+        drawn["origins"] = list(line.origins)
+    if line.marked:
+        drawn["marker"] = _symbol(line.role, 5)
+    return drawn | _texts(line.texts)
 
 
 def silence(mark: Line | Points, panel: Panel) -> dict[str, Any]:
     """Return the setting that hides the hover text of unnamed marks of a picture, where
     coordinates are not quantities.
     """
-    return {"hoverinfo": "skip"} if panel.picture and not mark.name else {}
+    if panel.picture and not mark.name:
+        return {"hoverinfo": "skip"}
+    return {}
 
 
 def points_trace(points: Points) -> dict[str, Any]:
     """Return the trace of points: small ones without an edge where there are many."""
-    many = len(points.x) > MANY
     size = LOOKS[points.role].size
     drawn: dict[str, Any] = {"type": "scatter", "mode": "markers", "x": points.x, "y": points.y}
-    dot = {
-        "symbol": LOOKS[points.role].symbol,
-        "size": min(4.0, size),
-        "color": f"@{points.role}",
-        "opacity": 0.6,
-        "line": {"width": 0},
-    }
-    drawn["marker"] = dot if many else _symbol(points.role, min(_LARGEST, size))
+    drawn["marker"] = _symbol(points.role, min(_LARGEST, size))
+    if len(points.x) > MANY:
+        drawn["marker"] = {
+            "symbol": LOOKS[points.role].symbol,
+            "size": min(4.0, size),
+            "color": f"@{points.role}",
+            "opacity": 0.6,
+            "line": {"width": 0},
+        }
     drawn |= _texts(points.texts)
     if points.keys:
-        drawn["keys"] = {
-            key: values if values.dtype.kind in "fiu" else [str(value) for value in values]
-            for key, values in points.keys.items()
-        }
+        drawn["keys"] = {key: _plain_key(values) for key, values in points.keys.items()}
     if points.low is not None and points.high is not None:
         drawn |= {"low": points.low, "high": points.high}
     return drawn
+
+
+def _plain_key(values: Any) -> Any:
+    """Return the values of a key of points as JSON can hold them: numbers, or texts."""
+    if values.dtype.kind in "fiu":
+        return values
+    return [str(value) for value in values]
 
 
 def _texts(texts: tuple[str, ...]) -> dict[str, Any]:
     """Return what points are, which takes the place of their coordinates if it has
     several lines.
     """
-    settings: dict[str, Any] = {"text": [plain(text) for text in texts]} if texts else {}
-    return settings | (
-        {"hovertemplate": "%{text}<extra></extra>"} if texts and "\n" in texts[0] else {}
-    )
+    if not texts:
+        return {}
+    settings: dict[str, Any] = {"text": [plain(text) for text in texts]}
+    if "\n" in texts[0]:
+        settings["hovertemplate"] = "%{text}<extra></extra>"
+    return settings
 
 
 def bars_trace(bars: Bars) -> dict[str, Any]:
@@ -179,16 +190,19 @@ def scale_of(axis: Axis, frame: Frame) -> dict[str, Any]:
             "range": [-0.6, len(places) - 0.4],
             "zeroline": False,
         }
-    scale: dict[str, Any] = {"type": "log"} if axis.log else {}
-    scale |= {"dtick": "D2", "tickformat": "~g"} if axis.log and axis.range is None else {}
+    scale: dict[str, Any] = {}
+    if axis.log:
+        scale["type"] = "log"
+        if axis.range is None:
+            # ticks at 1, 2 and 5 of each decade
+            scale |= {"dtick": "D2", "tickformat": "~g"}
     if axis.range is not None:
-        ends = [
-            None if not np.isfinite(end) else float(frame.shown(np.array(end)))
-            for end in axis.range
-        ]
-        if axis.log:
+        ends = ends_of_range(axis, frame)
+        if axis.log:  # of which plotly takes exponents
             ends = [None if end is None else float(np.log10(end)) for end in ends]
         scale["range"] = ends
     if axis.ticks:
-        scale |= {"tickvals": frame.shown(np.array(axis.ticks)).tolist()}
-    return scale | ({"tickformat": "d"} if axis.integer else {})
+        scale["tickvals"] = frame.shown(np.array(axis.ticks)).tolist()
+    if axis.integer:
+        scale["tickformat"] = "d"
+    return scale
