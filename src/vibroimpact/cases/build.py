@@ -214,7 +214,9 @@ def _check_oblique(case: CaseTable, law: ContactLaw) -> None:
         )
     if isinstance(friction, CompliantFriction) and not isinstance(law, CompliantLaw):
         # bodies that deform take no friction by the impulse
-        remedy = "" if deforms(case) else ', or friction by the impulse: "coulomb" or "rigid"'
+        remedy = ""
+        if not deforms(case):
+            remedy = ', or friction by the impulse: "coulomb" or "rigid"'
         raise InputError(
             f"{law.name} gives no normal force, which {friction.name} follows; take another "
             f"contact law{remedy}",
@@ -297,9 +299,8 @@ def check_drop(case: CaseTable) -> None:
         If the plate is free and gravity is not zero.
     """
     if case.plate.supports == "free" and case.drop.gravity:
-        raise InputError(
-            PLATE_FALLS if case.plate.radius is None else _BALL_FALLS, "plate.supports"
-        )
+        fault = PLATE_FALLS if case.plate.radius is None else _BALL_FALLS
+        raise InputError(fault, "plate.supports")
 
 
 def problem_of(
@@ -426,4 +427,5 @@ def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
 
 def _lists(table: dict[str, Any]) -> dict[str, Any]:
     """Return a table with lists in place of tuples."""
-    return {key: list(value) if isinstance(value, tuple) else value for key, value in table.items()}
+    of_tuples = {key: list(value) for key, value in table.items() if isinstance(value, tuple)}
+    return {**table, **of_tuples}

@@ -64,7 +64,10 @@ def changed_text(text: str, changes: Mapping[str, Any]) -> str:
         elif name not in table or old_value != value:
             _write(lines, "", name, value)
     new_text = "\n".join(lines)
-    return new_text if _table(new_text) == changed else tomli_w.dumps(changed)
+    if _table(new_text) == changed:
+        return new_text
+    # in some other notation of TOML; its comments are lost
+    return tomli_w.dumps(changed)
 
 
 def _write(lines: list[str], section: str, key: str, value: Any) -> None:

@@ -219,11 +219,12 @@ def _impact_costs(case: Case) -> Iterator[Cost]:
     elif impact_limit(case) is None and case.plate.motion is None:
         remedy += ", or a higher run.rest_speed"
     rounded = f"{float(f'{number:.2g}'):,.0f}"
+    noun = "impacts" if number > 1 else "impact"
     yield Cost(
         seconds * number,
         _IMPACT_BYTES * number + _POINT_BYTES * points,
         _IMPACT_ON_DISK * number + _POINT_ON_DISK * points,
-        f"{bound}about {rounded} impact{'s' if number > 1 else ''}{shortening}",
+        f"{bound}about {rounded} {noun}{shortening}",
         remedy,
     )
 
@@ -260,8 +261,9 @@ def _mode_costs(case: Case) -> Iterator[Cost]:
         number = modes_expected(recipe)
         dofs = mesh.dofs_per_node * len(mesh.nodes)
         share = 0.3 + 0.7 * number / _MODES_NUMBER
-        asymmetry = _WHOLE if isinstance(recipe.shape, ImportedMesh) else 1.0
-        seconds = _MODES_SECONDS * (dofs / _MODES_DOFS) ** (4.0 / 3.0) * share * asymmetry
+        seconds = _MODES_SECONDS * (dofs / _MODES_DOFS) ** (4.0 / 3.0) * share
+        if isinstance(recipe.shape, ImportedMesh):
+            seconds *= _WHOLE
         fewer = f"fewer {name}.modes"
         if recipe.reduction.max_frequency is not None:
             fewer = f"a lower {name}.max_frequency"
@@ -273,10 +275,12 @@ def _mode_costs(case: Case) -> Iterator[Cost]:
 
 def _listed(cost: Cost) -> str:
     """Return the amounts of a contribution in words."""
-    amounts = [_time(cost.seconds)] if cost.seconds > 1.0 else []
-    amounts.append(f"{_size(_PROGRAM_BYTES + cost.memory)} of memory")
-    disk = f" and {_size(cost.disk)} on disk" if cost.disk > 1e6 else ""
-    return ", ".join(amounts) + disk
+    phrase = f"{_size(_PROGRAM_BYTES + cost.memory)} of memory"
+    if cost.seconds > 1.0:
+        phrase = f"{_time(cost.seconds)}, {phrase}"
+    if cost.disk > 1e6:
+        phrase += f" and {_size(cost.disk)} on disk"
+    return phrase
 
 
 def _time(seconds: float) -> str:

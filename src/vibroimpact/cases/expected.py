@@ -134,8 +134,11 @@ def _deflection(case: Case, speed: float) -> float:
         return math.nan
     bending_stiffness = material.plane_strain_modulus * size[2] ** 3 / 12.0  # D
     mass = float(contact_pair(case).effective_mass)
+    # an infinite plate resists a point force like a dashpot of 8 sqrt(D rho h): the momentum of
+    # the rebound, 2 m v, moves it by that over this
     impedance = 8.0 * math.sqrt(bending_stiffness * material.density * size[2])
     of_infinite_plate = 2.0 * mass * speed / impedance
+    # a small plate is a spring that takes up the energy: m v^2 = w^2 / compliance
     factor = _CLAMPED if case.plate.supports == "clamped" else _SUPPORTED
     compliance = factor * min(size[:2]) ** 2 / bending_stiffness
     of_static_spring = speed * math.sqrt(mass * compliance)

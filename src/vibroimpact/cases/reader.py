@@ -149,7 +149,9 @@ def parse_case(text: str) -> dict[str, Any]:
 def _toml_hint(text: str, fault: str) -> str:
     """Return the likely cause of a TOML syntax error, to be added to the message; "" if unknown."""
     position = re.search(r"at line (\d+)", fault)
-    line = text.split("\n")[int(position[1]) - 1] if position else ""
+    line = ""
+    if position:
+        line = text.split("\n")[int(position[1]) - 1]
     if re.match(r"[^=]{1,100}=\s*[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[^\W\d_][^\"']*$", line):
         return '; a number with a unit is a text: write it in quotes, such as "25 mm"'
     if "overwrite" in fault or "twice" in fault:
@@ -207,8 +209,9 @@ def _case_of(table: Mapping[str, Any]) -> Case:
     except ValidationError as error:
         faults = []
         for path, message in fault_messages(error, Case, of_case=True):
-            prefix = f"{shortened(path_in_words(path, table), 160)}: " if path else ""
-            faults.append(prefix + message)
+            if path:
+                message = f"{shortened(path_in_words(path, table), 160)}: {message}"
+            faults.append(message)
         raise InputError.of_several(faults) from None
     return case
 

@@ -62,7 +62,9 @@ def case_template(
     (True, True)
     """
     text = prefix_errors(source, lambda: case_text(source))
-    others: dict[str, Any] = {"name": name} if name else {}
+    others: dict[str, Any] = {}
+    if name:
+        others["name"] = name
     others |= changes or {}
     load_case(source, others)  # which must be valid
     text = changed_text(text, others)
@@ -119,14 +121,17 @@ def _parameter_comment(item: Field[Any], exponent: Any) -> str:
     origin = default_origin(item)
     if origin:
         return _comment(item.name, "...", f"{meaning}; by default {origin}")
-    has_default = item.default is not MISSING and item.default is not None
-    return _comment(item.name, f"{item.default:g}" if has_default else "...", meaning)
+    if item.default is MISSING or item.default is None:
+        return _comment(item.name, "...", meaning)
+    return _comment(item.name, f"{item.default:g}", meaning)
 
 
 def _comment(name: str, value: str, meaning: str) -> str:
     """Return a key with a value and its meaning as a comment of TOML."""
     assignment = f"# {name} = {value}"
-    return f"{assignment.ljust(_WIDTH)}   # {meaning}" if meaning else assignment
+    if not meaning:
+        return assignment
+    return f"{assignment.ljust(_WIDTH)}   # {meaning}"
 
 
 def _meaning(info: FieldInfo) -> str:

@@ -112,7 +112,9 @@ def coupling_of(
         compliance to the contact.
     """
     treatment = treatment_of(case)
-    bodies = compute_modes(case, progress, tell) if elastic_names(case) else {}
+    bodies: Mapping[str, BodyModes] = {}
+    if elastic_names(case):
+        bodies = compute_modes(case, progress, tell)
     modes = {name: body.basis for name, body in bodies.items()}
     facts: dict[str, float | str] = {}
     if bodies or treatment == "identified":
@@ -170,7 +172,9 @@ def _plate_motions(body: BodyModes, treatment: str) -> tuple[ModalBasis, ModalBa
     The treatment "superposed" reproduces multibody programs: contact at a node, without
     corrections.
     """
-    rigid = None if body.model.is_held_vertically else body.body.rigid_motions(body.model)
+    rigid = None
+    if not body.model.is_held_vertically:
+        rigid = body.body.rigid_motions(body.model)
     if treatment == "superposed":
         return body.basis, rigid, 0.0
     modes, inertia = _basis_at_face(body)
@@ -208,9 +212,10 @@ def carried_modes(
     InputError
         As `coupling_of`.
     """
+    if not elastic_names(case):
+        return carry([])
     keys: list[str] = []
-    bodies = compute_modes(case, progress, tell) if elastic_names(case) else {}
-    for name, body in bodies.items():
+    for name, body in compute_modes(case, progress, tell).items():
         keys.append(model_key(body.body.recipe))
         if name == "plate" and treatment_of(case) != "superposed":
             _plate_compliance(body, tell)
@@ -436,7 +441,8 @@ def couple_bodies(
     else:
         tested = problem if local.measured.plate == "rigid" else coupled
         # measured on a plate at rest
-        element, element_facts = _identified(case, local.measured, replace(tested, motion=None))
+        tested = replace(tested, motion=None)
+        element, element_facts = _identified(case, local.measured, tested)
     return replace(coupled, local_element=element, facts={**coupling.facts, **element_facts})
 
 

@@ -47,7 +47,9 @@ def elastic_bodies(case: CaseTable) -> dict[str, ElasticBody]:
 def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> ElasticBody:
     """Return an elastic body; errors carry the name of the body in their key."""
     try:
-        return (_sphere if name == "sphere" else _plate)(case)
+        if name == "sphere":
+            return _sphere(case)
+        return _plate(case)
     except InputError as error:
         raise InputError(error.message, f"{name}.{error.key}".rstrip(".")) from None
 
@@ -82,13 +84,17 @@ def _sphere(case: CaseTable) -> ElasticBody:
     """Return the sphere of a case as an elastic body."""
     sphere = case.sphere
     mesh = sphere.mesh
-    contact = mesh.contact if isinstance(mesh, BroughtMeshTable) else None
+    contact = None
+    if isinstance(mesh, BroughtMeshTable):
+        contact = mesh.contact
     reduction = reduction_of("sphere", sphere, (contact, "lower"))
     if isinstance(mesh, BroughtMeshTable):
         recipe = recipe_of(mesh.brought(contact, "lower"), sphere.material, reduction)
-    else:
-        options = mesh.model_dump(exclude_none=True) if isinstance(mesh, SphereMeshTable) else {}
+    elif isinstance(mesh, SphereMeshTable):
+        options = mesh.model_dump(exclude_none=True)
         recipe = sphere_recipe(sphere.radius, sphere.material, reduction, **options)
+    else:
+        recipe = sphere_recipe(sphere.radius, sphere.material, reduction)
     damping = damping_of(sphere.damping, sphere.material.loss_factor)
     return ElasticBody(recipe, "lower", contact, damping)
 
@@ -165,13 +171,17 @@ def _mesh_options(
 
     Elements are nearly cubic if `layers` is None.
     """
-    layers = layers or max(1, round(size[2] * (elements / math.prod(size)) ** (1.0 / 3.0)))
+    if not layers:
+        elements_per_length = (elements / math.prod(size)) ** (1.0 / 3.0)
+        layers = max(1, round(size[2] * elements_per_length))
     side = math.sqrt(size[0] * size[1] * layers / elements)
     errors: dict[float, float] = {}  # of the number of elements, by their size
     # the count scales as 1 / side^2, except for elements around patches and rounding
     for _ in range(8):
         blocks = rectangle_blocks(size[:2], side, 1, *mesh_features(supports))
-        count = layers * sum((block.shape[0] - 1) * (block.shape[1] - 1) for block in blocks)
+        # a block has a row and a column of nodes more than of elements
+        per_layer = sum((block.shape[0] - 1) * (block.shape[1] - 1) for block in blocks)
+        count = layers * per_layer
         errors[side] = abs(count - elements)
         side *= math.sqrt(count / elements)
     element_size = min(errors, key=lambda size: errors[size])

@@ -5,7 +5,7 @@ There are checks that contact, sensors and supports lie on them.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -63,7 +63,9 @@ def _contact_key(case: CaseTable, name: str) -> str:
     mesh = getattr(getattr(case, name), "mesh", None)
     if getattr(mesh, "contact", None):
         return f"{name}.mesh.contact"
-    return "drop.position" if name == "plate" else f"{name}.mesh"
+    if name == "plate":
+        return "drop.position"
+    return f"{name}.mesh"
 
 
 def _position_key(sensor: str) -> str:
@@ -84,15 +86,33 @@ def _check_supports(case: CaseTable, body: ElasticBody, mesh: Mesh) -> None:
 
     Each force sensor must find a support.
     """
-    tables = case.plate.supports if isinstance(case.plate.supports, tuple) else ()
-    # constraints depend on the mesh and its mass properties only, so zero matrices and unit density
-    # serve
+    constraints = Constraints(_massless(case, mesh))
+    if isinstance(case.plate.supports, tuple):
+        _hold(case.plate.supports, constraints)
+    for name, (spot, _) in body.pressed.items():
+        try:
+            support_at(constraints.structure, body.recipe.supports, spot)
+        except InputError as error:
+            raise InputError(error.message, _position_key(name)) from None
+
+
+def _massless(case: CaseTable, mesh: Mesh) -> Structure:
+    """Return the structure of a plate without its matrices.
+
+    Constraints depend on the mesh and its mass properties only, so zero matrices and unit density
+    serve.
+    """
     dofs = mesh.dofs_per_node * len(mesh.nodes)
     zero = csr_array((dofs, dofs))
-    thickness = case.plate.size[2] if case.plate.size is not None and mesh.is_flat else 0.0
-    constraints = Constraints(
-        Structure(mesh, zero, zero, mass_properties(mesh, 1.0, thickness or 1.0), thickness)
-    )
+    thickness = 0.0
+    if case.plate.size is not None and mesh.is_flat:
+        thickness = case.plate.size[2]
+    properties = mass_properties(mesh, 1.0, thickness or 1.0)
+    return Structure(mesh, zero, zero, properties, thickness)
+
+
+def _hold(tables: tuple[Any, ...], constraints: Constraints) -> None:
+    """Add the supports of tables to constraints; errors name the table."""
     kinds = [{"type": table.type} for table in tables]
     for number, table in enumerate(tables):
         for support in table.supports():
@@ -101,8 +121,3 @@ def _check_supports(case: CaseTable, body: ElasticBody, mesh: Mesh) -> None:
             except InputError as error:
                 key = item_label("plate.supports", kinds, number)
                 raise InputError(error.message, key) from None
-    for name, (spot, _) in body.pressed.items():
-        try:
-            support_at(constraints.structure, body.recipe.supports, spot)
-        except InputError as error:
-            raise InputError(error.message, _position_key(name)) from None

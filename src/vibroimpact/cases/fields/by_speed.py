@@ -47,9 +47,9 @@ def read_by_speed(given: Mapping[str, Any], unit: str, allowed: Range) -> BySpee
     for key in keys:
         if key not in given:
             raise InputError(f"{key} is missing; a function of the approach speed is {_FORMS}")
-    return (
-        _polynomial(given, unit, allowed) if keys is _POLYNOMIAL else _table(given, unit, allowed)
-    )
+    if keys is _POLYNOMIAL:
+        return _polynomial(given, unit, allowed)
+    return _table(given, unit, allowed)
 
 
 def _table(given: Mapping[str, Any], unit: str, allowed: Range) -> SpeedTable:

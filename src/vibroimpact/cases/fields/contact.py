@@ -54,7 +54,8 @@ def read_contact(value: Any) -> ContactSection:
     law = law_of(value)
     items = {item.name: item for item in fields(law)}
     # the SI unit of a stiffness depends on the exponent of the law
-    exponent = value.get("exponent", items["exponent"].default if "exponent" in items else 1.0)
+    usual_exponent = items["exponent"].default if "exponent" in items else 1.0
+    exponent = value.get("exponent", usual_exponent)
     parameters: dict[str, Parameter] = {}
     for key, stated in value.items():
         if key in ("law", "friction") or key in LocalSection.model_fields:
@@ -69,7 +70,9 @@ def read_contact(value: Any) -> ContactSection:
         except InputError as error:
             raise InputError(error.message, key) from None
     local = {key: value[key] for key in LocalSection.model_fields if key in value}
-    friction = read_friction(value["friction"]) if "friction" in value else None
+    friction = None
+    if "friction" in value:
+        friction = read_friction(value["friction"])
     return ContactSection(law.name, parameters, read_table(LocalSection, local), friction)
 
 

@@ -46,7 +46,9 @@ ElementKind = Literal["hex8", "hex20", "hex27", "tet4", "tet10"]
 
 def _one_unit(value: Any) -> Any:
     """Return one of a unit that is given without a number: "1 mm" for "mm"."""
-    return f"1 {value}" if isinstance(value, str) and value.strip().isalpha() else value
+    if isinstance(value, str) and value.strip().isalpha():
+        return f"1 {value}"
+    return value
 
 
 class BroughtMeshTable(Section):
@@ -235,7 +237,9 @@ def _mesh_field(kind: type[Section]) -> Any:
         if isinstance(value, str):
             return read_table(BroughtMeshTable, {"file": value})
         if isinstance(value, dict):
-            return read_table(BroughtMeshTable if "file" in value else kind, value)
+            if "file" in value:
+                return read_table(BroughtMeshTable, value)
+            return read_table(kind, value)
         raise InputError(f"{quoted(value)} is neither the name of a file nor a table")
 
     def json_schema() -> dict[str, Any]:

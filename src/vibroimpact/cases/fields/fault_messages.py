@@ -108,10 +108,13 @@ class _Fault:
         if self.kind in ("bool_type", "bool_parsing"):
             return "true or false"
         if self.kind in ("tuple_type", "list_type"):
+            # the description of the field says of what
             return f"a list: {self.about}" if self.about else "a list"
         if self.kind in _WHOLE:
             field = field_at(self.section, self.path)
-            return _whole_number(parts_of(field) if field is not None else ())
+            if field is None:
+                return _whole_number(())
+            return _whole_number(parts_of(field))
         return self.about or "a value of another type"
 
     def messages(self) -> Iterator[tuple[str, str]]:
@@ -119,16 +122,12 @@ class _Fault:
         path = ".".join(self.path)
         cause = self.context.get("error")
         if isinstance(cause, InvalidTable):
-            yield from (
-                (f"{path}.{key}" if path else key, text)
-                for key, text in fault_messages(cause.error, cause.section)
-            )
+            prefix = f"{path}." if path else ""
+            for key, text in fault_messages(cause.error, cause.section):
+                yield prefix + key, text
         elif self.kind == "value_error":
-            key = getattr(cause, "key", "")
-            yield (
-                ".".join(part for part in (path, key) if part),
-                getattr(cause, "message", str(cause)),
-            )
+            keys = [*self.path, getattr(cause, "key", "")]
+            yield ".".join(key for key in keys if key), getattr(cause, "message", str(cause))
         elif self.kind == "missing" and self.path[-1].isdigit():
             yield ".".join(self.path[:-1]), f"there are too few values{_takes(self.about)}"
         else:
@@ -145,10 +144,10 @@ class _Fault:
             return f"the text is empty{_which_is(self.about)}"
         if self.kind in ("model_type", "model_attributes_type", "dict_type"):
             inside = section_at(self.section, self.path)
-            return (
-                f"{given} is not a "
-                f"table{_takes(listed(keys_of(inside)) if inside is not None else self.about)}"
-            )
+            taken = self.about
+            if inside is not None:
+                taken = listed(keys_of(inside))
+            return f"{given} is not a table{_takes(taken)}"
         if self.kind in ("tuple_type", "list_type") and section_at(self.section, self.path):
             if isinstance(self.value, dict):
                 is_one = "this is one table, and it must be"
@@ -163,17 +162,18 @@ class _Fault:
             return f"{given} is not allowed; it takes {self.context['expected']}"
         if self.kind == "string_type" and isinstance(self.value, (bool, int, float)):
             return f"{given} is not a text; put it in quotes"
+        fault = f"{given} is not allowed; it must be {self.wanted}"
+        hint = ""
         if isinstance(self.value, str):
+            # what must be one of several texts has them in quotes
             hint = did_you_mean(self.value, re.findall(r'"([^"]*)"', self.wanted))
-        else:
-            hint = ""
-        return f"{given} is not allowed; it must be {self.wanted}{'.' if hint else ''}{hint}"
+        return f"{fault}.{hint}" if hint else fault
 
     def _unknown_key(self) -> str:
         above = self.path[:-1]
         key = self.path[-1]
         section = section_at(self.section, above)
-        known = keys_of(section) if section is not None else []
+        known = [] if section is None else keys_of(section)
         name = ".".join(part for part in above if not part.isdigit())
         place = "a case" if self.of_case else "it"
         if name and self.of_case:
@@ -242,7 +242,9 @@ def _takes(about: str) -> str:
 def _words(annotation: Quantity | JsonSchema) -> str:
     if isinstance(annotation, JsonSchema):
         return annotation.description
-    return f"{annotation.meaning} [{annotation.unit}]" if annotation.unit else annotation.meaning
+    if annotation.unit:
+        return f"{annotation.meaning} [{annotation.unit}]"
+    return annotation.meaning
 
 
 def _whole_number(parts: Iterable[Any]) -> str:
@@ -255,6 +257,8 @@ def _whole_number(parts: Iterable[Any]) -> str:
     }
     least, most, multiple = (bounds.get(bound) for bound in _BOUNDS)
     kind = "a whole number" if multiple is None else f"a multiple of {multiple}"
-    if least is None or most is None:
-        return kind if least is None else f"{kind}, at least {least}"
+    if least is None:
+        return kind
+    if most is None:
+        return f"{kind}, at least {least}"
     return f"{kind} from {least} to {most}"

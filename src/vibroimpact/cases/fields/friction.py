@@ -52,7 +52,9 @@ def read_friction(value: Any) -> FrictionTable | None:
             )
         except InputError as error:
             raise InputError(error.message, f"friction.{key}") from None
-    return None if value["law"] == NO_FRICTION else FrictionTable(value["law"], parameters)
+    if value["law"] == NO_FRICTION:
+        return None
+    return FrictionTable(value["law"], parameters)
 
 
 def check_friction_law(value: Any) -> None:

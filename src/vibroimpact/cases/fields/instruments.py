@@ -42,7 +42,9 @@ def _field_of(item: DataclassField[Any]) -> tuple[Any, Any]:
     annotation = Annotated[float, Quantity(item.metadata["unit"], meaning, allowed)]
     if item.default is MISSING:
         return annotation, ...
-    return (annotation | None if item.default is None else annotation), item.default
+    if item.default is None:
+        return annotation | None, None
+    return annotation, item.default
 
 
 TABLES = {kind.key(): _table_of(kind) for kind in instruments().values()}

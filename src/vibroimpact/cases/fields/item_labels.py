@@ -43,14 +43,21 @@ def item_label(key: str, items: Sequence[Any], number: int) -> str:
     """
     item = items[number] if number < len(items) else None
     labels = NUMBER_LABELS.get(key.rpartition(".")[2], ())
-    if not isinstance(item, dict) and number < len(labels):
-        return f"{key}.{labels[number]}"
-    name = item.get("name") if isinstance(item, dict) else None
-    if isinstance(name, str) and name and len(name) <= _LONGEST and name.isprintable():
+    if isinstance(item, dict):
+        name = item.get("name")
         names = [other.get("name") for other in items if isinstance(other, dict)]
-        if names.count(name) == 1:
+        if _is_short_name(name) and names.count(name) == 1:
             return f'{key}."{name}"'
-    return key if len(items) == 1 else f"{key} (the {ordinal(number + 1)})"
+    elif number < len(labels):
+        return f"{key}.{labels[number]}"
+    if len(items) == 1:
+        return key
+    return f"{key} (the {ordinal(number + 1)})"
+
+
+def _is_short_name(name: Any) -> bool:
+    """Return whether a name fits into a message: a user may give anything."""
+    return isinstance(name, str) and 0 < len(name) <= _LONGEST and name.isprintable()
 
 
 def ordinal(number: int) -> str:

@@ -64,7 +64,9 @@ def field_at(section: type[BaseModel], path: Sequence[str]) -> FieldInfo | None:
     """
     keys = [key for number, key in enumerate(path) if number < len(path) - 1 or not key.isdigit()]
     above = section_at(section, keys[:-1])
-    return field_of(above, keys[-1]) if above is not None and keys else None
+    if above is None or not keys:
+        return None
+    return field_of(above, keys[-1])
 
 
 def field_of(section: type[BaseModel], key: str) -> FieldInfo | None:

@@ -166,7 +166,10 @@ def read_uncertain(value: Any, unit: str, allowed: Range) -> Written:
     """
     if isinstance(value, Written):
         return value
-    read_quantity(without_deviation(value) if has_deviation(value) else value, unit, allowed)
+    nominal = value
+    if has_deviation(value):
+        nominal = without_deviation(value)
+    read_quantity(nominal, unit, allowed)  # for its range
     return read_written(value, unit)
 
 

@@ -121,6 +121,5 @@ def check_alternatives(
     """
     given = [name for name in (first, other) if getattr(table, name) is not None]
     if len(given) == 2 or (needed and not given):
-        raise InputError(
-            f"give either {first} or {other}; {'both are' if given else 'neither is'} given", key
-        )
+        fault = "both are" if given else "neither is"
+        raise InputError(f"give either {first} or {other}; {fault} given", key)

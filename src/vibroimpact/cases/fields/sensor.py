@@ -176,9 +176,12 @@ class SensorSection(_WithTables):
         second_kind = next((stated for stated in with_table if stated is not kind), None)
         if second_kind is None:
             return
-        remedy = f', or take instrument = "{second_kind.name}"'
-        if kind in with_table:
-            remedy = f", or the table {kind.key()}" if self.instrument is None else ""
+        if kind not in with_table:
+            remedy = f', or take instrument = "{second_kind.name}"'
+        elif self.instrument is None:
+            remedy = f", or the table {kind.key()}"
+        else:
+            remedy = ""
         raise InputError(
             f"its instrument is {kind.noun}; leave out this table{remedy}", second_kind.key()
         )
@@ -236,12 +239,16 @@ class SensorSection(_WithTables):
 
     @property
     def _kind(self) -> type[InstrumentInCase] | None:
-        return None if self.instrument is None else instruments()[self.instrument]
+        if self.instrument is None:
+            return None
+        return instruments()[self.instrument]
 
     @property
     def table(self) -> Section | None:
         """The table of its instrument; None if it has none."""
-        table: Section | None = None if self._kind is None else getattr(self, self._kind.key())
+        table: Section | None = None
+        if self._kind is not None:
+            table = getattr(self, self._kind.key())
         return table
 
     def instrument_in_case(self) -> InstrumentInCase | None:
@@ -249,7 +256,9 @@ class SensorSection(_WithTables):
         kind = self._kind
         if kind is None:
             return None
-        return kind() if self.table is None else kind(**self.table.model_dump())
+        if self.table is None:
+            return kind()
+        return kind(**self.table.model_dump())
 
     @property
     def subject(self) -> Subject:
@@ -262,17 +271,24 @@ class SensorSection(_WithTables):
         if isinstance(direction, str):
             direction = _DIRECTIONS[direction]
         x, y, z = (component / math.hypot(*direction) for component in direction)
+        quantity: MeasuredQuantity = "acceleration"
+        instrument = amplifier = converter = None
         stated = self.instrument_in_case()
-        instrument = None if stated is None else stated.instrument()
-        quantity = self.quantity or ("acceleration" if instrument is None else instrument.quantity)
+        if stated is not None:
+            instrument = stated.instrument()
+            quantity = instrument.quantity
+        if self.amplifier is not None:
+            amplifier = self.amplifier.amplifier()
+        if self.converter is not None:
+            converter = self.converter.converter()
         return Sensor(
             self.name,
-            quantity,
+            self.quantity or quantity,
             (x, y, z),
             self.rate,
             instrument,
             self.filter,
             self.corner,
-            amplifier=None if self.amplifier is None else self.amplifier.amplifier(),
-            converter=None if self.converter is None else self.converter.converter(),
+            amplifier=amplifier,
+            converter=converter,
         )

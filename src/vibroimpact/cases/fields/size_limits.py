@@ -5,7 +5,7 @@ hostile input is rejected quickly.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator
@@ -103,7 +103,10 @@ def _check_table(table: Any, where: tuple[Any, ...], number: int) -> int:
         raise InputError(f"it holds more than {MOST_VALUES} values; {message}")
     if len(where) > DEEPEST:
         raise _too_large(where[:4], f"tables and lists lie more than {DEEPEST} deep in one another")
-    for key, value in table.items() if isinstance(table, Mapping) else enumerate(table):
+    items: Iterable[tuple[Any, Any]] = enumerate(table)
+    if isinstance(table, Mapping):
+        items = table.items()
+    for key, value in items:
         if type(key) is str and len(key) > LONGEST_KEY:
             raise _too_large(where, f"a key has {len(key)} characters; {LONGEST_KEY} are the most")
         kind = type(value)

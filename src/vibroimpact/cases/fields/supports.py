@@ -249,8 +249,11 @@ def _read_supports(value: Any) -> Any:
         check_count(len(value), MOST_ITEMS, "supports")
         tables = []
         for number, item in enumerate(value):
+            if isinstance(item, SupportTable):
+                tables.append(item)
+                continue
             try:
-                tables.append(item if isinstance(item, SupportTable) else _read_support(item))
+                tables.append(_read_support(item))
             except InputError as error:
                 key = f"{number}.{error.key}".rstrip(".")
                 raise InputError(error.message, key) from None
@@ -293,7 +296,9 @@ def supports_of(value: str | tuple[SupportTable, ...]) -> tuple[Support, ...]:
     if isinstance(value, str):
         from vibroimpact.structures.supports.edge import Edge
 
-        return () if value == "free" else tuple(Edge(edge, value) for edge in get_args(EdgeName))  # type: ignore[arg-type]
+        if value == "free":
+            return ()
+        return tuple(Edge(edge, value) for edge in get_args(EdgeName))  # type: ignore[arg-type]
     return tuple(support for table in value for support in table.supports())
 
 

@@ -218,4 +218,6 @@ class Conditions:
 
 def _material(table: Mapping[str, Any] | str) -> Material:
     """Return the material of a resolved case, in which "rigid" is the only name."""
-    return RIGID if isinstance(table, str) else Material(**table)
+    if isinstance(table, str):
+        return RIGID
+    return Material(**table)

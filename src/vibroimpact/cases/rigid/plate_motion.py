@@ -39,7 +39,10 @@ def motion_of(case: CaseTable) -> PlateMotion | None:
 
 def motion_length(case: CaseTable) -> float:
     """Return how long the motion of a file lasts [s]; infinite without one, or if it repeats."""
-    return np.inf if case.plate.motion is None else _motion(case.plate.motion)[1]
+    if case.plate.motion is None:
+        return np.inf
+    _, length = _motion(case.plate.motion)
+    return length
 
 
 @derived

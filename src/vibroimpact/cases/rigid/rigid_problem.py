@@ -23,6 +23,8 @@ from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
     from vibroimpact.cases.sections.schema import CaseTable
+    from vibroimpact.dynamics.fluids.air import Air
+    from vibroimpact.dynamics.fluids.liquid import Liquid
 
 PLATE_FALLS = (
     "the supports let the plate fall or tilt: under gravity it falls away from under the "
@@ -59,9 +61,10 @@ def contact_laws_of(case: CaseTable) -> tuple[ContactLaw, ...]:
     laws = []
     try:
         for impact in range(impacts):
-            # the last value of a shorter list holds
-            of_impact = {key: values[min(impact, len(values) - 1)] for key, values in lists.items()}
-            laws.append(law.for_pair(pair, **{**parameters, **of_impact}))
+            for key, values in lists.items():
+                # the last value of a shorter list holds
+                parameters[key] = values[min(impact, len(values) - 1)]
+            laws.append(law.for_pair(pair, **parameters))
     except InputError as error:
         raise InputError(error.message, f"contact.{error.key}".rstrip(".")) from None
     return tuple(laws)
@@ -69,9 +72,19 @@ def contact_laws_of(case: CaseTable) -> tuple[ContactLaw, ...]:
 
 def fluid_of(case: CaseTable) -> Fluid | None:
     """Return what the sphere of a case flies through; None for a vacuum."""
-    if case.contact.local.liquid is not None:
-        return case.contact.local.liquid.liquid()
-    return None if case.drop.air is None else case.drop.air.air()
+    return _liquid_of(case) or _air_of(case)
+
+
+def _liquid_of(case: CaseTable) -> Liquid | None:
+    if case.contact.local.liquid is None:
+        return None
+    return case.contact.local.liquid.liquid()
+
+
+def _air_of(case: CaseTable) -> Air | None:
+    if case.drop.air is None:
+        return None
+    return case.drop.air.air()
 
 
 def by_speed_of(case: CaseTable) -> dict[str, BySpeed]:
@@ -106,9 +119,13 @@ def impact_limit(case: CaseTable) -> int | None:
 
     None if it continues to rest or to a time.
     """
-    if case.run.impacts is None:
-        return Problem.impacts if run_duration(case) is None else None
-    return None if case.run.impacts == "all" else case.run.impacts
+    if case.run.impacts == "all":
+        return None
+    if case.run.impacts is not None:
+        return case.run.impacts
+    if run_duration(case) is not None:  # which ends the run
+        return None
+    return Problem.impacts
 
 
 def run_duration(case: CaseTable) -> float | None:
@@ -152,8 +169,8 @@ def rigid_problem(case: CaseTable) -> Problem:
         **normal_motion_of(case),
         oblique=oblique_of(case),
         motion=motion_of(case),
-        air=None if case.drop.air is None else case.drop.air.air(),
-        liquid=None if case.contact.local.liquid is None else case.contact.local.liquid.liquid(),
+        air=_air_of(case),
+        liquid=_liquid_of(case),
         sensors=tuple(sensor.sensor() for sensor in case.sensors),
         impacts=impact_limit(case),
         duration=run_duration(case),
@@ -167,7 +184,8 @@ def _rigid_below(case: CaseTable) -> Body:
     """Return the fixed rigid body below: a plate, or a sphere that replaces it."""
     if case.plate.radius is not None:
         return Body(mass=np.inf, contact_offset=case.plate.radius)
-    return rigid_plate(case.plate.size[2] if case.plate.size else 0.0)
+    thickness = case.plate.size[2] if case.plate.size else 0.0
+    return rigid_plate(thickness)
 
 
 @derived

@@ -100,7 +100,10 @@ def _check_law_is_named(table: Mapping[str, Any], key: str) -> None:
     """Check that there is a law at a key of a case: the other keys of its table depend on it."""
     value: Any = table
     for name in key.split("."):
-        value = value.get(name) if isinstance(value, dict) else None
+        if not isinstance(value, dict):
+            value = None
+            break
+        value = value.get(name)
     if value is None:
         raise InputError(
             f"the case has no {key}, on which the keys of its table depend; "
@@ -222,7 +225,9 @@ def _holder(case: dict[str, Any], path: list[str], done: str) -> Any:
                 ".".join(path[:number]),
             )
         is_last = number == len(path) - 1
-        missing: Any = [0.0] * len(_COMPONENTS[name]) if name in _DEFAULT_ZEROS and is_last else {}
+        missing: Any = {}
+        if name in _DEFAULT_ZEROS and is_last:
+            missing = [0.0] * len(_COMPONENTS[name])
         holder = outer.setdefault(name, missing)
         if name in ("air", "liquid") and isinstance(holder, bool):
             holder = outer[name] = {}
@@ -278,8 +283,10 @@ def _keys_of_field(key: str, field: str, info: FieldInfo) -> Iterator[tuple[str,
         yield key, None
         for quantity in components:
             yield f"{key}.{quantity.meaning}", quantity
+    elif field == "damping":
+        yield key, _DAMPING
     else:
-        yield key, _DAMPING if field == "damping" else quantity_of(info)
+        yield key, quantity_of(info)
     table = InlineMaterial if field == "material" else _table_in(info)
     if table is None:
         return

@@ -352,7 +352,9 @@ class CaseTable(Section):
         """Let instruments be in the air of the case unless they state its density."""
         density = AIR_DENSITY if self.drop.air is None else self.drop.air.density
         for sensor in self.sensors:
-            stated = {} if sensor.table is None else sensor.table.__dict__
+            if sensor.table is None:
+                continue
+            stated = sensor.table.__dict__  # the table itself does not take another value
             if "air_density" in stated and stated["air_density"] is None:
                 stated["air_density"] = density
 

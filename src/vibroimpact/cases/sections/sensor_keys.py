@@ -75,9 +75,12 @@ def sensor_keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None
             if field == "name":
                 continue
             key = f"sensors.{name}.{field}"
-            yield key, None if field in _NUMBERS else quantity_of(info)
-            for axis, quantity in _NUMBERS.get(field, {}).items():
-                yield f"{key}.{axis}", quantity
+            if field in _NUMBERS:
+                yield key, None
+                for axis, quantity in _NUMBERS[field].items():
+                    yield f"{key}.{axis}", quantity
+            else:
+                yield key, quantity_of(info)
             # keys of the table of an instrument, some of which are in the unit of the output
             for inner_key, inner in _fields(info).items():
                 yield f"{key}.{inner_key}", quantity_of(inner) or quantity_in_unit(inner, unit)
@@ -142,7 +145,9 @@ def named_sensor(sensors: Any, name: str) -> dict[str, Any]:
     if name in names:
         return entries[names.index(name)]
     names = [known for known in names if known]
-    others = f"there are {choices(names, name)}" if names else "the case has none with a name"
+    others = "the case has none with a name"
+    if names:
+        others = f"there are {choices(names, name)}"
     raise InputError(f"there is no sensor called {quoted(name)}; {others}")
 
 

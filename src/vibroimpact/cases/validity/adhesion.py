@@ -63,8 +63,10 @@ def _sentence(drop: Conditions, lost: float) -> str:
     radius = drop.effective_radius
     speed = float(sticking_speed(radius, drop.modulus, drop.effective_mass))
     pull = 1.5 * np.pi * WORK_OF_ADHESION * radius
-    fall = f"the first restitution would fall by {percent_less(lost).removeprefix('-')} or more"
-    consequence = "the sphere would stick" if lost >= 1.0 else fall
+    decrease = percent_less(lost).removeprefix("-")
+    consequence = f"the first restitution would fall by {decrease} or more"
+    if lost >= 1.0:
+        consequence = "the sphere would stick"
     return (
         f"with a work of adhesion of {WORK_OF_ADHESION:g} J/m^2, the largest of clean and "
         f"dry bodies, {consequence}: such spheres stick below "

@@ -66,7 +66,9 @@ def _sound_sentence(drop: Conditions, number: float) -> str:
     start = ""
     given = drop.case["drop"]
     if given.get("height") is not None:
-        key = "drop.speed" if given.get("velocity") is None else "drop.velocity without drop.height"
+        key = "drop.speed"
+        if given.get("velocity") is not None:
+            key = "drop.velocity without drop.height"
         start = f"begin with the speed at first touch, {key}, and "
     return (
         f"the sphere flies at {number:.2g} of the speed of sound in air at 20 C, and the "

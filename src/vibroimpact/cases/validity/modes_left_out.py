@@ -34,11 +34,15 @@ def _effects(body: str, drop: Conditions, _: float) -> Effects:
 
 
 def _sentence(body: str, drop: Conditions, _: float) -> str:
-    (part, highest), duration = drop.summary.modes[body], float(drop.summary.duration)
+    part, highest = drop.summary.modes[body]
+    duration = float(drop.summary.duration)
     enough = _ENOUGH / duration
-    # those of a very compliant body may matter beyond
-    wanted = enough if highest < enough else 2.0 * highest
-    instead = f", in place of {body}.modes" if drop.case and "modes" in drop.case[body] else ""  # type: ignore[literal-required]
+    wanted = 2.0 * highest  # the modes of a very compliant body may matter beyond
+    if highest < enough:
+        wanted = enough
+    instead = ""
+    if drop.case and "modes" in drop.case[body]:  # type: ignore[literal-required]
+        instead = f", in place of {body}.modes"
     return (
         f"the modes of the {body} end at {text(highest, 'Hz')}, and the contact lasts "
         f"{text(duration, 's', 3)}: the modes left out may "

@@ -17,7 +17,9 @@ _LOST = 0.3  # relative change above which it is not told how large it is
 
 def _number(drops: Conditions) -> Array:
     changes = np.asarray(drops.summary.changes, dtype=float)
-    return float(np.nan_to_num(changes, nan=np.inf).max()) if changes.any() else math.nan
+    if not changes.any():
+        return math.nan
+    return float(np.nan_to_num(changes, nan=np.inf).max())
 
 
 def _sentence(drop: Conditions, _: float) -> str:
@@ -29,8 +31,9 @@ def _sentence(drop: Conditions, _: float) -> str:
         growth.append(f"to {100.0 * changes[first]:.2g} % of impact {first + 1}")
     if lost.size:
         growth.append(f"to {100.0 * _LOST:g} % or more of impact {lost[0] + 1}")
-    undamped = _undamped(drop)
-    remedy = f"give {undamped} damping, or judge" if undamped else "judge"
+    remedy = "judge"
+    if undamped := _undamped(drop):
+        remedy = f"give {undamped} damping, or judge"
     perturbation = RELATIVE_CHANGE
     if drop.case:
         perturbation = max(RELATIVE_CHANGE, drop.case["run"]["tolerance"])
@@ -54,7 +57,9 @@ def _start(drop: Conditions) -> str:
 
 
 def _shown(change: float) -> str:
-    percentage = f"{two_digits(100.0 * change)} %" if change < 0.995 else "100 % or more"
+    percentage = "100 % or more"
+    if change < 0.995:
+        percentage = f"{two_digits(100.0 * change)} %"
     return (
         f"an impact that changes by {percentage} for a relative change of the drop by "
         f"{RELATIVE_CHANGE:g}, or by the tolerance if that is larger"
@@ -72,7 +77,8 @@ def _undamped(drop: Conditions) -> str:
     ]
     if not bodies:
         return ""
-    return f"{' and '.join(bodies)} {'its' if len(bodies) == 1 else 'their'}"
+    pronoun = "its" if len(bodies) == 1 else "their"
+    return f"{' and '.join(bodies)} {pronoun}"
 
 
 LIMITS = (

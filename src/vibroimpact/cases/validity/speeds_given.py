@@ -31,9 +31,9 @@ def _sentence(drop: Conditions, number: float) -> str:
     name, function = max(
         drop.by_speed.items(), key=lambda item: max(fast / item[1].fastest, item[1].slowest / slow)
     )
-    speeds = f"the first impact comes at {fast:.4g} m/s" + (
-        "" if slow == fast else f", the slowest at {slow:.4g} m/s"
-    )
+    speeds = f"the first impact comes at {fast:.4g} m/s"
+    if slow != fast:
+        speeds += f", the slowest at {slow:.4g} m/s"
     return (
         f"contact.{name} is given for approach speeds from {function.slowest:.4g} to "
         f"{function.fastest:.4g} m/s, and {speeds}: "

@@ -176,8 +176,11 @@ def _assess_values(
     checked: CheckedKey, estimate: HertzEstimate, key: str, table: Mapping[Any, Any], given: Any
 ) -> tuple[str, Any]:
     """Return what `_assess` returns, without its protection against extreme values."""
-    values = [float(value) for value in given] if isinstance(given, list) else [float(given)]
-    bounds = checked.rule(estimate, table if isinstance(table, Mapping) else {})
+    numbers = given if isinstance(given, list) else [given]
+    values = [float(number) for number in numbers]
+    if not isinstance(table, Mapping):
+        table = {}
+    bounds = checked.rule(estimate, table)
     implausible = [
         value
         for value in values
@@ -198,7 +201,8 @@ def _assess_values(
         remedy = f'was {correction.text} meant? Write "{correction.text}"'
     if not remedy:
         return "", given
-    fault = _text(bounds.below if abs(example) < bounds.low else bounds.above, example)
+    is_too_small = abs(example) < bounds.low
+    fault = _text(bounds.below if is_too_small else bounds.above, example)
     shown = f"{number_text(example)} {unit}"
     if len(values) == 1:
         sentence = f"{key}: {shown} {fault}; {remedy}"
@@ -211,7 +215,9 @@ def _assess_values(
     for value in values:
         correction = corrections.get(value)
         corrected.append(value if correction is None else correction.value)
-    return sentence, corrected if isinstance(given, list) else corrected[0]
+    if not isinstance(given, list):
+        return sentence, corrected[0]
+    return sentence, corrected
 
 
 def _most_likely(
@@ -241,7 +247,9 @@ def _most_likely(
 
 def _text(phrase: Words, value: float) -> str:
     """Return a part of a message, which may be a function of the value."""
-    return phrase if isinstance(phrase, str) else phrase(abs(value))
+    if isinstance(phrase, str):
+        return phrase
+    return phrase(abs(value))
 
 
 def _corrections(value: float, unit: str, sizes: Mapping[str, float]) -> Iterator[_Correction]:
@@ -258,7 +266,9 @@ def _corrections(value: float, unit: str, sizes: Mapping[str, float]) -> Iterato
 
     # the unit was omitted
     for other, size in sizes.items():
-        text = f"{number_text(value)} {other}" if value < _SHORT else in_natural_unit(value * size)
+        text = f"{number_text(value)} {other}"
+        if value >= _SHORT:
+            text = in_natural_unit(value * size)
         yield _Correction(value * size, text)
     # a value in SI was given in another unit
     for size in sizes.values():

@@ -45,7 +45,9 @@ class HertzEstimate:
     def size(self) -> tuple[float, float, float]:
         """Length, width and thickness of the plate [m]."""
         size = self.case["plate"].get("size")
-        return (math.nan, math.nan, math.nan) if size is None else tuple(size)
+        if size is None:
+            return (math.nan, math.nan, math.nan)
+        return tuple(size)
 
     @property
     def across(self) -> float:
@@ -72,7 +74,9 @@ class HertzEstimate:
     def _upward(self) -> float:
         """Velocity along the normal at the start [m/s], upwards; zero if it falls from rest."""
         velocity = self.case["drop"].get("velocity")
-        return 0.0 if velocity is None else float(velocity[2])
+        if velocity is None:
+            return 0.0
+        return float(velocity[2])
 
     @cached_property
     def speed(self) -> float:
@@ -89,8 +93,10 @@ class HertzEstimate:
     @property
     def touch(self) -> float:
         """Time of the first touch of a plate that is not moved [s]."""
-        drop = self.case["drop"]
-        return 0.0 if drop.get("height") is None else (self._upward + self.speed) / self.gravity
+        if self.case["drop"].get("height") is None:
+            return 0.0
+        # gravity turns the velocity from upwards at the start to the speed downwards at touch
+        return (self._upward + self.speed) / self.gravity
 
     @property
     def in_fluid(self) -> bool:
@@ -103,7 +109,9 @@ class HertzEstimate:
         stiffness = float(
             hertz_stiffness(self._conditions.modulus, self._conditions.effective_radius)
         )
-        return stiffness if math.isfinite(stiffness) else math.nan
+        if not math.isfinite(stiffness):  # of rigid bodies
+            return math.nan
+        return stiffness
 
     @cached_property
     def depth(self) -> float:
@@ -135,7 +143,9 @@ class HertzEstimate:
         known: Mapping[str, Any] = self._conditions.law.__dataclass_fields__
         if "exponent" in known:
             return float(self._conditions.law_parameter("exponent", 1.5))
-        return 1.5 if "stiffness" in known and "1.5" in known["stiffness"].metadata["unit"] else 1.0
+        if "stiffness" in known and "1.5" in known["stiffness"].metadata["unit"]:
+            return 1.5
+        return 1.0
 
     @property
     def derived_parameters(self) -> set[str]:

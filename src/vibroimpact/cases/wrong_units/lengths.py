@@ -30,9 +30,8 @@ def likely_lengths(values: Sequence[float], most: Sequence[float]) -> str:
         return ""
     for unit, size in _UNITS.items():
         if all(abs(value) * size <= end for value, end in zip(values, most, strict=True)):
-            texts = [f'"{number_text(value)} {unit}"' for value in values]
-            return (
-                f"; were {unit} meant? Write "
-                f"{texts[0] if len(texts) == 1 else '[' + ', '.join(texts) + ']'}"
-            )
+            texts = ", ".join(f'"{number_text(value)} {unit}"' for value in values)
+            if len(values) > 1:
+                texts = f"[{texts}]"
+            return f"; were {unit} meant? Write {texts}"
     return ""

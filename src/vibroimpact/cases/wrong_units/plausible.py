@@ -142,7 +142,9 @@ def count_text(value: float) -> str:
     >>> count_text(31622.8), count_text(6.4e12)
     ('31,623', '6.4e12')
     """
-    return f"{value:,.0f}" if value < 1e9 else number_text(value, 2)
+    if value < 1e9:
+        return f"{value:,.0f}"
+    return number_text(value, 2)
 
 
 def number_text(value: float, digits: int = 6) -> str:

@@ -33,20 +33,24 @@ def _nan_outside(value: float, ends: tuple[float, float]) -> float:
     """Return a value, or NaN if it lies outside its range, so that an implausible value
     does not affect the range of another.
     """
-    return value if ends[0] <= value <= ends[1] else math.nan
+    if ends[0] <= value <= ends[1]:
+        return value
+    return math.nan
 
 
 def density(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
     """Return the range of a density, so high that sound is hardly faster than in diamond."""
     least = _nan_outside(table["youngs_modulus"], _MODULUS) / _LIGHTEST
+
+    def below(value: float) -> str:
+        if value < _DENSITY[0]:
+            return "is lighter than most foams"
+        return "is very light for a material as stiff"
+
     return PlausibleRange(
         low=float(np.fmax(_DENSITY[0], least)),
         high=_DENSITY[1],
-        below=lambda value: (
-            "is lighter than most foams"
-            if value < _DENSITY[0]
-            else "is very light for a material as stiff"
-        ),
+        below=below,
         above="is heavier than any metal",
     )
 
@@ -54,17 +58,22 @@ def density(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange
 def elastic_modulus(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
     """Return the range of a Young's modulus for the density of the material."""
     weight = _nan_outside(table.get("density", math.nan), _DENSITY)
+
+    def below(value: float) -> str:
+        if value < _MODULUS[0]:
+            return "is as soft as a gel"
+        return "is very soft for a material as heavy"
+
+    def above(value: float) -> str:
+        if value > _MODULUS[1]:
+            return "is stiffer than diamond"
+        return "is very stiff for a material as light"
+
     return PlausibleRange(
         low=next((least for end, least in _SOFTEST if weight < end), _MODULUS[0]),
         high=float(np.fmin(_MODULUS[1], weight * _LIGHTEST)),
-        below=lambda value: (
-            "is as soft as a gel" if value < _MODULUS[0] else "is very soft for a material as heavy"
-        ),
-        above=lambda value: (
-            "is stiffer than diamond"
-            if value > _MODULUS[1]
-            else "is very stiff for a material as light"
-        ),
+        below=below,
+        above=above,
     )
 
 
@@ -98,26 +107,24 @@ def hardness(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRang
 
 def plate_thickness(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
     """Return the range of the thickness of a plate."""
-    return PlausibleRange(
-        high=float(np.fmin(5.0, 4.0 * estimate.across)),
-        above=lambda value: (
-            "is very thick for a plate"
-            if value > 5.0
-            else f"is much more than the plate is long, {estimate.across:g} m"
-        ),
-    )
+
+    def above(value: float) -> str:
+        if value > 5.0:
+            return "is very thick for a plate"
+        return f"is much more than the plate is long, {estimate.across:g} m"
+
+    return PlausibleRange(high=float(np.fmin(5.0, 4.0 * estimate.across)), above=above)
 
 
 def sphere_radius(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
     """Return the range of the radius of a sphere."""
-    return PlausibleRange(
-        high=float(np.fmin(3.0, 4.0 * estimate.across)),
-        above=lambda value: (
-            "is very large for a sphere"
-            if value > 3.0
-            else f"is far more than the plate is long, {estimate.across:g} m"
-        ),
-    )
+
+    def above(value: float) -> str:
+        if value > 3.0:
+            return "is very large for a sphere"
+        return f"is far more than the plate is long, {estimate.across:g} m"
+
+    return PlausibleRange(high=float(np.fmin(3.0, 4.0 * estimate.across)), above=above)
 
 
 def sphere_mass(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
@@ -192,27 +199,34 @@ def contact_stiffness(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plau
     indentation reaches 0.3 of the radius.
     """
     exponent = estimate.exponent
-    at = f" at his largest indentation, {number_text(estimate.depth, 2)} m,"
+    # k x^n = k_H x^1.5 at Hertz's largest indentation x
     reference = estimate.stiffness * estimate.depth ** (1.5 - exponent)
     unit = stiffness_unit(exponent)
-    low = reference / 2000.0
-    phrase = "Hertz's" if exponent == 1.5 else f"what gives Hertz's force{at}"
-    if exponent == 1.0:
-        low = min(
-            reference / 100.0, estimate.mass * (estimate.speed / (0.3 * estimate.radius)) ** 2
-        )
-
-    def said(value: float) -> str:
-        return (
-            f"is {ratio_text(value / reference)} than {phrase} {number_text(reference, 4)} {unit}"
-        )
-
     if exponent == 1.5:
+        phrase = "Hertz's"
         remedy = "leave it out to take Hertz's"
     else:
+        depth = number_text(estimate.depth, 2)
+        phrase = f"what gives Hertz's force at his largest indentation, {depth} m,"
         remedy = f"something like {number_text(reference, 1)} {unit} is usual"
+    low = reference / 2000.0
+    if exponent == 1.0:
+        # a soft linear spring may be meant, into which the sphere sinks by 0.3 of its radius:
+        # m v^2 = k x^2
+        softest = estimate.mass * (estimate.speed / (0.3 * estimate.radius)) ** 2
+        low = min(reference / 100.0, softest)
+
+    def fault(value: float) -> str:
+        ratio = ratio_text(value / reference)
+        return f"is {ratio} than {phrase} {number_text(reference, 4)} {unit}"
+
     return PlausibleRange(
-        low=low, high=300.0 * reference, below=said, above=said, reference=reference, remedy=remedy
+        low=low,
+        high=300.0 * reference,
+        below=fault,
+        above=fault,
+        reference=reference,
+        remedy=remedy,
     )
 
 
@@ -278,10 +292,9 @@ def run_duration(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausible
     the earliest.
     """
     touch = estimate.touch
-    lasts = float(np.nan_to_num(estimate.contact_time))
+    release = touch + float(np.nan_to_num(estimate.contact_time))
     # a plate that is moved is touched at another time
-    earliest = 0.0 if estimate.case["plate"].get("motion") else touch + lasts
-
+    earliest = 0.0 if estimate.case["plate"].get("motion") else release
     when = "after" if estimate.in_fluid else "at"
 
     def below(value: float) -> str:
@@ -289,22 +302,25 @@ def run_duration(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausible
             return f"is over before the sphere touches the plate, {when} {touch:.4g} s"
         return (
             f"is over before the first contact is, which by Hertz's theory ends {when} about "
-            f"{touch + lasts:.6g} s"
+            f"{release:.6g} s"
         )
+
+    def remedy(value: float) -> str:
+        phrase = ""
+        if value < earliest:
+            phrase = f"give {_rounded_up(earliest)} s or more"
+            if estimate.in_fluid:
+                phrase += ", as the fluid slows the fall"
+        return phrase
 
     return PlausibleRange(
         low=earliest,
         high=1000.0,
         below=below,
         above="is far longer than a sphere bounces",
-        reference=touch + lasts,
+        reference=release,
         within=500.0,
-        remedy=lambda value: (
-            f"give {_rounded_up(earliest)} s or "
-            f"more{', as the fluid slows the fall' * estimate.in_fluid}"
-            if value < earliest
-            else ""
-        ),
+        remedy=remedy,
     )
 
 
@@ -316,12 +332,12 @@ def _rounded_up(value: float) -> str:
 
 def rest_speed(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
     """Return the range of the rest speed, less than the approach speed of the first impact."""
-    what = (
-        "that the first touch would have in a vacuum" if estimate.in_fluid else "of the first touch"
-    )
+    speed = "the speed of the first touch"
+    if estimate.in_fluid:
+        speed = "the speed that the first touch would have in a vacuum"
     return PlausibleRange(
         high=0.9 * estimate.speed,
-        above=f"is not well below the speed {what}, {estimate.speed:.3g} m/s",
+        above=f"is not well below {speed}, {estimate.speed:.3g} m/s",
     )
 
 
@@ -347,8 +363,11 @@ def sampling_rate(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausibl
     contacts on, or 1 kHz if that is less; else 10 Hz.
     """
     lasts = estimate.contact_time
+    low = 10.0
+    if table["quantity"] == "acceleration":
+        low = float(np.fmin(1000.0, 0.1 / lasts))
     return PlausibleRange(
-        low=float(np.fmin(1000.0, 0.1 / lasts)) if table["quantity"] == "acceleration" else 10.0,
+        low=low,
         high=1e9,
         below=lambda value: (
             f"takes a sample every {number_text(1.0 / value, 2)} s, and the contact lasts "
