@@ -85,11 +85,16 @@ def read_message(text: str | bytes) -> Message:
     vibroimpact.errors.InputError: a message is a table with a type: open, case, cancel, report,
     signals
     """
-    block = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
+    block = text
+    if isinstance(block, str):
+        # halves of a pair of code points, which JavaScript may send, are no UTF-8
+        block = block.encode("utf-8", "surrogatepass")
     if len(block) > LONGEST:
         raise InputError(f"the message has {len(block)} bytes; {LONGEST} are the most")
     content = parse_json(block, "the message")
-    kind = content.pop("type", None) if isinstance(content, dict) else None
+    kind = None
+    if isinstance(content, dict):
+        kind = content.pop("type", None)
     if not isinstance(kind, str) or kind not in _KEYS:
         raise InputError(f"a message is a table with a type: {', '.join(_KEYS)}")
     number = content.pop("number", 0)

@@ -92,7 +92,9 @@ def _check_not_null(table: dict[str, Any]) -> None:
 
 def _names_file(section: Any, key: str) -> bool:
     """Return whether a key of a section is the path of a file, or a table that has one."""
-    value = section.get(key) if isinstance(section, dict) else None
+    if not isinstance(section, dict):
+        return False
+    value = section.get(key)
     return isinstance(value, str) or (isinstance(value, dict) and "file" in value)
 
 
@@ -168,7 +170,9 @@ def _nodes_expected(recipe: Recipe) -> float:
     for side, lines_across in zip(shape.size[:2], lines, strict=True):
         regular = max(1.0, side / shape.element_size)
         elements *= regular + 3.0 * len(discs) + len(lines_across)
-    nodes_per_element = 9.0 if isinstance(shape, PlateOfPlates) else 8.0 * shape.layers
+    nodes_per_element = 9.0
+    if not isinstance(shape, PlateOfPlates):
+        nodes_per_element = 8.0 * shape.layers
     return float(elements * nodes_per_element)
 
 
