@@ -109,7 +109,9 @@ class AdamsContact:
         radius = adams_number(self.radius)
         stiffness = adams_number(self.stiffness)
         exponent = adams_number(self.exponent)
-        damping = f"VARVAL({names.damping})" if self.varies else self.damping
+        damping = self.damping
+        if self.varies:
+            damping = f"VARVAL({names.damping})"
         if self.penetration is not None:
             return (
                 f"IMPACT({height}, {velocity}, {radius}, {stiffness}, {exponent}, {damping}, "
@@ -202,14 +204,17 @@ def adams_contact(drop: Drop) -> AdamsContact:
             )
     stiffness, exponent, penetration = _stiffness_terms(law)
     fall = max(drop.height - drop.radius, 0.0)
+    first_speed = float(np.sqrt(drop.speed**2 + 2.0 * drop.gravity * fall))
     # from SI to mm, N and s
+    if penetration is not None:
+        penetration *= 1e3
     return AdamsContact(
         radius=1e3 * drop.radius,
         gravity=1e3 * drop.gravity,
-        first_speed=1e3 * float(np.sqrt(drop.speed**2 + 2.0 * drop.gravity * fall)),
+        first_speed=1e3 * first_speed,
         stiffness=stiffness / 1000.0**exponent,
         exponent=exponent,
-        penetration=None if penetration is None else 1e3 * penetration,
+        penetration=penetration,
         damping=damping,
         varies=varies,
         meaning=meaning,
@@ -262,13 +267,14 @@ def _by_steps(
     """Return the damping as a step function of the stored approach speed, with edges
     midway between the speeds of the impacts.
     """
-    by_function = ", or damping_max as a function of the speed" if impact_law else ""
+    remedy = "give one damping for all"
+    if impact_law:
+        remedy += ", or damping_max as a function of the speed"
     for impact, (fast, slow) in enumerate(pairwise(speeds[: len(dampings)]), 1):
         if not slow < fast:
             raise InputError(
                 f"impact {impact + 1} is not slower than impact {impact}, so that Adams "
-                "can't select their dampings by the "
-                f"approach speed; give one damping for all{by_function}",
+                f"can't select their dampings by the approach speed; {remedy}",
                 "contact",
             )
     steps = adams_number(dampings[-1])

@@ -89,8 +89,9 @@ class AdamsModel:
     @property
     def pull(self) -> tuple[float, float, float]:
         """Acceleration of gravity [mm/s^2]."""
-        along = (0.0, 0.0) if self.motion is None else self.motion.gravity
-        return *along, -self.contact.gravity
+        if self.motion is None:
+            return 0.0, 0.0, -self.contact.gravity
+        return *self.motion.gravity, -self.contact.gravity
 
     @property
     def spot(self) -> tuple[float, float, float]:
@@ -120,6 +121,10 @@ def adams_model(drop: Drop) -> AdamsModel:
     if drop.plate_material != drop.sphere_material:
         materials.append(drop.plate_material)
     x, y = drop.position
+    plate = None
+    if drop.plate_size is not None:
+        length, width, thickness = drop.plate_size
+        plate = (1e3 * length, 1e3 * width, 1e3 * thickness)
     return AdamsModel(
         name=legal_name(drop.name),
         # without underscores: Adams View takes a comment adams_view_name='...' as the name of the
@@ -131,9 +136,7 @@ def adams_model(drop: Drop) -> AdamsModel:
         centre=(1e3 * x, 1e3 * y, 1e3 * drop.height),
         velocity=-1e3 * drop.speed,
         motion=adams_motion(drop),
-        plate=None
-        if drop.plate_size is None
-        else (1e3 * drop.plate_size[0], 1e3 * drop.plate_size[1], 1e3 * drop.plate_size[2]),
+        plate=plate,
         materials=_material_data([material for material in materials if _is_elastic(material)]),
         notes=tuple(adams_notes(drop)),
         end=drop.end_time,
@@ -157,17 +160,16 @@ def adams_dialog(drop: Drop) -> list[dict[str, Any]]:
 def remarks(model: AdamsModel) -> list[str]:
     """Return the remarks at the head of the file, one line each."""
     contact = model.contact
+    # Adams' IMPACT reaches its damping at a penetration
+    damping = "hysteretic damping factor D [-]"
+    if contact.penetration is not None:
+        damping = "largest damping C [N s/mm]"
     lines = [
         "written by vibroimpact; units: mm, kg, N, s (MMKS); z is up, the plate's upper "
         "surface is z = 0",
         "the plate is part of the ground; both bodies are rigid, and do not use the materials",
         f"stiffness in N/mm^n = that in N/m^n over 1000^n, n = {contact.exponent:g}",
-        (
-            "largest damping C [N s/mm]: "
-            if contact.penetration is not None
-            else "hysteretic damping factor D [-]: "
-        )
-        + contact.meaning,
+        f"{damping}: {contact.meaning}",
         f"the longest step is about 1/{_STEPS} of the first contact, the output step about "
         f"1/{_OUTPUTS}: with steps as long as the contact "
         "it gets one output or none, and the largest force is missed",
@@ -262,8 +264,11 @@ def _material_data(materials: list[Material]) -> tuple[MaterialData, ...]:
     names: list[str] = []
     for material in materials:
         name = legal_name(material.name or "material")
-        taken = name.lower() in _OWN_NAMES or name.lower() in (other.lower() for other in names)
-        names.append(f"{name}_material_{len(names) + 1}" if taken else name)
+        # Adams does not tell upper from lower case
+        taken = _OWN_NAMES | {other.lower() for other in names}
+        if name.lower() in taken:
+            name = f"{name}_material_{len(names) + 1}"
+        names.append(name)
     return tuple(
         MaterialData(
             name=name,

@@ -11,7 +11,7 @@ from vibroimpact.exporting.adams_contact import Names
 from vibroimpact.exporting.adams_text import adams_number
 from vibroimpact.exporting.contact_parameters import approach_speeds
 from vibroimpact.exporting.drop import Drop
-from vibroimpact.exporting.program_friction import COULOMB, friction_in
+from vibroimpact.exporting.program_friction import COULOMB, coefficient_of, friction_in
 
 _CREEP = 1e-3
 """Slip beside which others must be large for all of the friction, over the first approach
@@ -97,7 +97,7 @@ def adams_motion(drop: Drop) -> AdamsMotion | None:
         spin=(spin_x, spin_y, spin_z),
         gravity=(1e3 * gravity_x, 1e3 * gravity_y),
         radius=1e3 * drop.radius,
-        coefficient=0.0 if law is None else float(law.coefficient),
+        coefficient=coefficient_of(law),
         creep=1e3 * _CREEP * approach_speeds(drop)[0],
     )
 

@@ -24,7 +24,11 @@ def adams_number(value: float) -> str:
     ('1.0E-05', '25.0', '0.3', '5.0', '1.0E+22')
     """
     mantissa, _, exponent = repr(float(f"{value:.15g}")).partition("e")
-    return (mantissa if "." in mantissa else f"{mantissa}.0") + (f"E{exponent}" if exponent else "")
+    if "." not in mantissa:
+        mantissa += ".0"
+    if not exponent:
+        return mantissa
+    return f"{mantissa}E{exponent}"
 
 
 def adams_numbers(values: Sequence[float]) -> str:

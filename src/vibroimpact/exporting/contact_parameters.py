@@ -203,7 +203,8 @@ def _rigid_notes(drop: Drop) -> list[str]:
             "law alone, without vibration."
         )
         remedy.append('model = "rigid" and none of the keys of elastic bodies')
-        remedy += ["no [[sensors]]"] if "plate" in drop.elastic else []
+        if "plate" in drop.elastic:
+            remedy.append("no [[sensors]]")
     if drop.local_element:
         lost.append(
             "The local element in series with the contact law, which stands for the "
@@ -218,9 +219,8 @@ def _rigid_notes(drop: Drop) -> list[str]:
         remedy.append("no contact.finite_sphere")
     if not drop.original_impacts:
         return lost
-    written, original = (
-        _restitutions(impacts) for impacts in (drop.impacts, drop.original_impacts)
-    )
+    written = _restitutions(drop.impacts)
+    original = _restitutions(drop.original_impacts)
     return [
         *lost,
         "The exported drop therefore differs from the one that was run: it is the same case "
@@ -240,15 +240,15 @@ def _remedy(drop: Drop, changes: list[str]) -> str:
         return (
             "Rigid bodies can't rebound as in the run, where an impact has a restitution above 1."
         )
-    lossless = drop.laws[0].free_parameter is None
-    *first, last = [
-        *changes,
-        *(["a contact law with a loss parameter, such as tsuji"] if lossless else []),
-    ]
-    with_these = f"{', '.join(first)} and {last}" if first else last
+    needed = list(changes)
+    if drop.laws[0].free_parameter is None:
+        needed.append("a contact law with a loss parameter, such as tsuji")
+    *first, last = needed
+    if first:
+        last = f"{', '.join(first)} and {last}"
     return (
         "For rigid bodies that rebound as in the run, calibrate the case with "
-        f"{with_these} to the run's impacts.csv as [calibrate] "
+        f"{last} to the run's impacts.csv as [calibrate] "
         "target, and export the calibration."
     )
 

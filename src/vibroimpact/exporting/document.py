@@ -36,4 +36,6 @@ def export_document(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> 
         "notes": format.notes(drop),
     }
     document |= {"doubts": list(drop.doubts), "tested": format.tested}
-    return document | ({"adams_dialog": dialog} if (dialog := format.dialog(drop)) else {})
+    if dialog := format.dialog(drop):
+        document["adams_dialog"] = dialog
+    return document

@@ -62,12 +62,9 @@ def export_result(
     """
     export_format = find_export_format(format)
     drop = export_format.prepare(load_drop(directory))
-    return save_export(
-        drop,
-        export_format,
-        default_output(directory, format) if output is None else Path(output),
-        force=force,
-    )
+    if output is None:
+        output = default_output(directory, format)
+    return save_export(drop, export_format, Path(output), force=force)
 
 
 def default_output(directory: str | PathLike[str], format: str) -> Path:
@@ -78,8 +75,9 @@ def default_output(directory: str | PathLike[str], format: str) -> Path:
     >>> default_output("runs/first/", "csv").as_posix()
     'runs/first-csv'
     """
-    given = Path(directory)
-    folder = given.resolve() if given.name in ("", "..") else given
+    folder = Path(directory)
+    if folder.name in ("", ".."):
+        folder = folder.resolve()
     return folder.with_name(f"{folder.name}-{format}")
 
 
@@ -113,10 +111,11 @@ def _targets(contents: Mapping[str, bytes], output: Path) -> dict[str, Path]:
         if len(contents) == 1:
             return dict.fromkeys(contents, output)
         if output.suffix.lower() in suffixes:
-            more = ", ..." if len(contents) > _MOST_NAMED else ""
             shown = ", ".join(list(contents)[:_MOST_NAMED])
+            if len(contents) > _MOST_NAMED:
+                shown += ", ..."
             raise InputError(
-                f"{output}: there are {len(contents)} files to write ({shown}{more}); name a folder"
+                f"{output}: there are {len(contents)} files to write ({shown}); name a folder"
             )
     return {name: output / name for name in contents}
 

@@ -63,7 +63,9 @@ class Formula(np.lib.mixins.NDArrayOperatorsMixin):
 
     def _bound(self, binding: int) -> str:
         """Return the text, in parentheses unless it binds as strongly."""
-        return self.text if self.binding >= binding else f"({self.text})"
+        if self.binding >= binding:
+            return self.text
+        return f"({self.text})"
 
 
 def _formula_of(value: Any) -> Formula:
@@ -71,4 +73,5 @@ def _formula_of(value: Any) -> Formula:
         return value
     # a whole number stays one, as an exponent
     text = repr(value) if isinstance(value, int) else number(value)
-    return Formula(text, _ATOM if value >= 0 else _SUM)
+    binding = _ATOM if value >= 0 else _SUM  # a minus binds like a difference
+    return Formula(text, binding)

@@ -86,17 +86,21 @@ def drop_of_result(
         )
     deflection = result.deflection
     motion = normal_motion_of(case)
-    if deflection is None:
-        surface = {}
-    else:
+    rigid = None
+    if deforms(case) or function is not None:
+        rigid = rigid_problem(case)
+    position = case.drop.position
+    surface = {}
+    if deflection is not None:
+        # the impact point may be given as a node set of an imported mesh
+        position = deflection.contact
         surface = {
             "time": deflection.time,
             "x": deflection.x,
             "y": deflection.y,
             "height": deflection.height.astype(float),
+            "sphere_position": deflection.sphere_position,
         }
-    if deflection is not None:
-        surface["sphere_position"] = deflection.sphere_position
     return Drop(
         name=result.name,
         radius=float(case.sphere.radius),
@@ -105,8 +109,7 @@ def drop_of_result(
         sphere_material=case.sphere.material,
         plate_material=case.plate.material,
         plate_size=case.plate.size,
-        # the impact point may be given as a node set of an imported mesh
-        position=case.drop.position if deflection is None else deflection.contact,
+        position=position,
         height=float(motion.get("height", case.sphere.radius)),
         speed=float(motion.get("speed", 0.0 - motion.get("velocity", 0.0))),
         gravity=float(motion["gravity"]),
@@ -119,7 +122,7 @@ def drop_of_result(
         elastic=tuple(elastic_names(case)),
         local_element=case.contact.local.local_compliance == "identified",
         finite_sphere=case.contact.local.finite_sphere,
-        rigid=rigid_problem(case) if deforms(case) or function is not None else None,
+        rigid=rigid,
         end_time=float(result.history["time_s"][-1]),
         impacts=result.impacts,
         history=result.history,

@@ -56,15 +56,15 @@ def friction_in(drop: Drop, program: str, stands_for: Mapping[str, str]) -> Fric
     ... ).coefficient
     0.3
     """
-    law = None if drop.oblique is None else drop.oblique.friction
-    if law is None:
+    if drop.oblique is None or drop.oblique.friction is None:
         return None
+    law = drop.oblique.friction
     if law.name not in stands_for:
-        elastic = all(
-            issubclass(find_friction_law(name), CompliantFriction) for name in stands_for.values()
-        )
-        of_spring = ", with a contact law whose spring has the exponent 1.5" if elastic else ""
-        others = f"{', '.join(stands_for)} can{of_spring}"
+        others = f"{', '.join(stands_for)} can"
+        kinds = [find_friction_law(name) for name in stands_for.values()]
+        if all(issubclass(kind, CompliantFriction) for kind in kinds):
+            # their tangential stiffness follows from Hertz's contact radius
+            others += ", with a contact law whose spring has the exponent 1.5"
         raise InputError(
             f"{law.name} can't be written for {program}; {others}", "contact.friction.law"
         )
@@ -100,13 +100,20 @@ def spring_of_overlap(
     return float(2.0 * law.effective_shear_modulus * np.sqrt(law.effective_radius) * wider)
 
 
+def coefficient_of(friction: FrictionLaw | None) -> float:
+    """Return the coefficient of friction as a program takes it: zero without friction."""
+    if friction is None:
+        return 0.0
+    return float(friction.coefficient)
+
+
 def friction_notes(drop: Drop, program: str, written: FrictionLaw | None) -> list[str]:
     """Return the limitations of the motion along the plate in a program that has the
     friction law `written` for it.
     """
-    law = None if drop.oblique is None else drop.oblique.friction
-    if drop.oblique is None or law is None or written is None:
+    if drop.oblique is None or drop.oblique.friction is None or written is None:
         return []
+    law = drop.oblique.friction
     notes = []
     if written.name != law.name:
         notes += [

@@ -4,10 +4,12 @@ deformation is in the contact law.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.calibration.fit.single_impacts import first_approach_speed
 from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.dynamics.response import Response
@@ -50,18 +52,25 @@ def as_rigid(drop: Drop) -> Drop:
         )
     if drop.rigid is None:
         return drop
-    response = (
-        simulate(drop.rigid) if drop.function is None else _by_function(drop.rigid, *drop.function)
-    )
-    deforms = bool(drop.elastic or drop.local_element or drop.finite_sphere)
+    if drop.function is None:
+        response = simulate(drop.rigid)
+    else:
+        response = _by_function(drop.rigid, *drop.function)
+    laws = drop.laws
+    if drop.rigid.by_speed:
+        # rigid bodies meet at other speeds from the second impact on
+        laws = laws_at_impacts(drop.rigid, response.impacts["approach_speed_m_s"])
+    name = drop.name
+    original_impacts: Mapping[str, Floats] = {}
+    if drop.elastic or drop.local_element or drop.finite_sphere:
+        name = f"{drop.name}, rigid"
+        original_impacts = drop.impacts
     return replace(
         drop,
-        name=f"{drop.name}, rigid" if deforms else drop.name,
-        laws=laws_at_impacts(drop.rigid, response.impacts["approach_speed_m_s"])
-        if drop.rigid.by_speed
-        else drop.laws,
+        name=name,
+        laws=laws,
         rigid=None,
-        original_impacts=drop.impacts if deforms else {},
+        original_impacts=original_impacts,
         end_time=float(response.end_time[0]),
         impacts=response.impacts,
         history={},

@@ -49,16 +49,16 @@ def export_summary(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> R
     doubts about the drop, and how it was tested.
     """
     shown = files if len(files) <= _MOST else files[: _MOST - 1]
-    dialog = format.dialog(drop)
-    speeds = drop.impacts["approach_speed_m_s"].tolist()
-    names = [f"impact {number} at {digits(speed)} m/s" for number, speed in enumerate(speeds, 1)]
-    typed = list(block_lines(dialog_table(dialog, names))) if dialog else []
-    more = f"and {len(files) - len(shown)} more files in {commonpath(files)}"
-    return Group(
-        *(Text(f"wrote {file}") for file in shown),
-        *([Text(more)] if len(shown) < len(files) else []),
-        *typed,
-        *(Text(f"Note: {note}", style="yellow") for note in format.notes(drop)),
-        *warning_lines(drop.doubts),
-        Text(f"Tested: {format.tested}.", style="dim"),
-    )
+    lines: list[RenderableType] = [Text(f"wrote {file}") for file in shown]
+    if len(shown) < len(files):
+        lines.append(Text(f"and {len(files) - len(shown)} more files in {commonpath(files)}"))
+    if dialog := format.dialog(drop):
+        speeds = drop.impacts["approach_speed_m_s"].tolist()
+        names = [
+            f"impact {number} at {digits(speed)} m/s" for number, speed in enumerate(speeds, 1)
+        ]
+        lines += block_lines(dialog_table(dialog, names))
+    lines += [Text(f"Note: {note}", style="yellow") for note in format.notes(drop)]
+    lines += warning_lines(drop.doubts)
+    lines.append(Text(f"Tested: {format.tested}.", style="dim"))
+    return Group(*lines)

@@ -22,7 +22,12 @@ from vibroimpact.exporting.deck import number, render_deck
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, file_name
 from vibroimpact.exporting.formula import Formula
-from vibroimpact.exporting.program_friction import COULOMB, friction_in, friction_notes
+from vibroimpact.exporting.program_friction import (
+    COULOMB,
+    coefficient_of,
+    friction_in,
+    friction_notes,
+)
 from vibroimpact.exporting.rigid_drop import as_rigid
 from vibroimpact.files.plain_names import plain_words
 from vibroimpact.ranges import Range
@@ -93,7 +98,9 @@ def _damping_factor(law: HystereticLaw) -> str:
         raise InputError(
             f"{law.name} can't be written for EXUDYN, as its damping factor is no single formula"
         ) from error
-    return factor.text if isinstance(factor, Formula) else number(factor)
+    if isinstance(factor, Formula):
+        return factor.text
+    return number(factor)
 
 
 def _parameters(drop: Drop) -> list[_Parameter]:
@@ -102,10 +109,11 @@ def _parameters(drop: Drop) -> list[_Parameter]:
         values = [getattr(law, item.name) for law in drop.laws]
         if values[0] is None or item.metadata["memory"]:
             continue
-        changes = len(set(values)) > 1
-        given = [float(value) for value in (values if changes else values[:1])]
+        numbers = [float(value) for value in values]
+        if len(set(values)) == 1:  # the same in every impact
+            numbers = numbers[:1]
         unit = item.metadata["unit"] or "-"
-        parameters.append(_Parameter(item.name, given, item.metadata["meaning"], unit))
+        parameters.append(_Parameter(item.name, numbers, item.metadata["meaning"], unit))
     return parameters
 
 
@@ -144,9 +152,17 @@ def _deck(drop: Drop) -> str:
     speeds = approach_speeds(drop)
     force_model = _force_model(law)
     duration, _ = first_contact(law, drop)
-    friction = _friction(drop)
+    friction_coefficient = coefficient_of(_friction(drop))
     oblique = drop.oblique or Oblique()
-    fitted_parameter, function = drop.function or ("", None)
+    damping_factor = ""
+    if isinstance(law, HystereticLaw) and force_model == "hysteretic":
+        damping_factor = _damping_factor(law)
+    fitted_parameter = ""
+    slowest_fitted = fastest_fitted = 0.0
+    if drop.function is not None:
+        fitted_parameter, function = drop.function
+        slowest_fitted = function.slowest
+        fastest_fitted = function.fastest
     return render_deck(
         "exudyn.py.j2",
         case_name=plain_words(drop.name),
@@ -168,17 +184,13 @@ def _deck(drop: Drop) -> str:
         impacts=len(speeds),
         contact_duration=duration,
         force_model=force_model,
-        damping_factor=(
-            _damping_factor(law)
-            if isinstance(law, HystereticLaw) and force_model == "hysteretic"
-            else ""
-        ),
+        damping_factor=damping_factor,
         parameters=_parameters(drop),
         fitted_parameter=fitted_parameter,
         fitted_value=_fitted_value(drop),
-        slowest_fitted=0.0 if function is None else function.slowest,
-        fastest_fitted=0.0 if function is None else function.fastest,
-        friction_coefficient=0.0 if friction is None else float(friction.coefficient),
+        slowest_fitted=slowest_fitted,
+        fastest_fitted=fastest_fitted,
+        friction_coefficient=friction_coefficient,
         creep_speed=_CREEP * speeds[0],
     )
 

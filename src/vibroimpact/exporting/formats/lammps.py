@@ -106,6 +106,9 @@ def _deck(drop: Drop) -> str:
     dampings = _dampings(drop)
     speeds = approach_speeds(drop)
     stiffness, exponent = linear_or_hertzian(drop, "LAMMPS")
+    normal_stiffness = stiffness
+    if exponent != 1.0:
+        normal_stiffness /= math.sqrt(drop.radius)  # by which LAMMPS multiplies that of "hertz"
     duration, _ = first_contact(contact_law, drop)
     oblique = drop.oblique or Oblique()
     gravity = [*map(float, oblique.gravity), -drop.gravity]
@@ -146,8 +149,7 @@ def _deck(drop: Drop) -> str:
         steps_per_contact=_STEPS,
         max_steps=20 * _STEPS,
         normal_model=_normal_model(drop),
-        # LAMMPS multiplies that of "hertz" by sqrt(R)
-        normal_stiffness=stiffness if exponent == 1.0 else stiffness / math.sqrt(drop.radius),
+        normal_stiffness=normal_stiffness,
         damping_model=dampings[0].model,
         damping_coefficients=coefficients,
         limit_damping=dampings[0].limited,

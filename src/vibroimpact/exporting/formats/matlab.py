@@ -68,7 +68,7 @@ def write(drop: Drop) -> dict[str, bytes]:
         variables["signals"] = signals
     if drop.surface:
         variables["surface"] = {name: np.asarray(values) for name, values in drop.surface.items()}
-        units["surface"] = {name: "s" if name == "time" else "m" for name in drop.surface}
+        units["surface"] = {**dict.fromkeys(drop.surface, "m"), "time": "s"}
     variables["drop"], units["drop"] = _facts(drop)
     file = BytesIO()
     savemat(
@@ -92,10 +92,10 @@ def legal_names(names: list[str]) -> dict[str, str]:
     {'a1': 'a1', '2nd sensor': 's_2nd_sensor', 'end': 's_end', 'left/upper': 'left_upper'}
     """
     starts = (plain.replace("-", "_") for plain in plain_names(names).values())
-    legal = [
-        start if re.match("[A-Za-z]", start) and start not in _KEYWORDS else f"s_{start}"
-        for start in starts
-    ]
+    legal = []
+    for start in starts:
+        is_legal = re.match("[A-Za-z]", start) and start not in _KEYWORDS
+        legal.append(start if is_legal else f"s_{start}")
     taken: set[str] = set()
     numbers: dict[str, int] = {}
     for place, name in enumerate(legal):

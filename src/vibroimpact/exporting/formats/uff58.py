@@ -101,11 +101,11 @@ def history_rate(drop: Drop) -> float | None:
     of ten, so that the step is exact in the few digits of the format. None if no contact has a
     positive duration, or there would be too many samples.
     """
-    if drop.impacts:
-        durations = drop.impacts["duration_s"][drop.impacts["duration_s"] > 0.0]
-    else:
-        durations = np.zeros(0)
-    if not len(durations) or not len(drop.history.get("time_s", ())):
+    if not drop.impacts or not len(drop.history.get("time_s", ())):
+        return None
+    durations = drop.impacts["duration_s"]
+    durations = durations[durations > 0.0]
+    if not len(durations):
         return None
     needed = _IN_CONTACT / float(durations.min())
     if drop.signals:
@@ -114,7 +114,9 @@ def history_rate(drop: Drop) -> float | None:
     else:
         power = 10.0 ** math.floor(math.log10(needed))
         rate = next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= needed)
-    return rate if drop.end_time * rate < _MOST_SAMPLES else None
+    if drop.end_time * rate < _MOST_SAMPLES:
+        return rate
+    return None
 
 
 def _of_signals(drop: Drop) -> Iterator[_Function]:
@@ -137,15 +139,17 @@ def _of_history(drop: Drop) -> Iterator[_Function]:
     rate = history_rate(drop)
     if rate is None:
         return
-    motion = motion_at(
-        drop.history, np.arange(int(drop.history["time_s"][-1] * rate * (1.0 + 1e-12)) + 1) / rate
-    )
+    # the last sample is not to be lost to rounding
+    last = int(drop.history["time_s"][-1] * rate * (1.0 + 1e-12))
+    motion = motion_at(drop.history, np.arange(last + 1) / rate)
     for name, (phrase, kind, unit) in SPHERE_FUNCTIONS.items():
         yield _Function(phrase, _SPHERE, _UP, kind, unit, rate, motion[name])
     for name, column in OBLIQUE_HISTORY_COLUMNS.items():
         if name in motion:
             what, axis, _ = name.split("_", 2)
-            direction = "xyz".index(axis) + 1 + (_TURNING if what == "spin" else 0)
+            direction = "xyz".index(axis) + 1
+            if what == "spin":
+                direction += _TURNING
             yield _Function(
                 column.meaning,
                 _SPHERE,
@@ -232,7 +236,8 @@ def _notes(drop: Drop) -> list[str]:
         f"{number} is the sensor {one_line(name)}"
         for number, name in enumerate(drop.signals, _FIRST_SENSOR)
     ]
-    nodes = nodes if len(nodes) <= _MOST_NAMED else [*nodes[: _MOST_NAMED - 1], "and so on"]
+    if len(nodes) > _MOST_NAMED:
+        nodes = [*nodes[: _MOST_NAMED - 1], "and so on"]
     notes = [
         f"Node {_SPHERE} is the sphere"
         + "".join(f", {phrase}" for phrase in nodes)
@@ -252,7 +257,9 @@ def _notes(drop: Drop) -> list[str]:
         notes.append(
             f"The direction of {', '.join(slanting)} lies along no axis; it is written as a scalar."
         )
-    rates = {signal.sensor.rate for signal in drop.signals.values()} | ({rate} if rate else set())
+    rates = {signal.sensor.rate for signal in drop.signals.values()}
+    if rate:
+        rates.add(rate)
     rough = sorted(
         sampling_rate
         for sampling_rate in rates

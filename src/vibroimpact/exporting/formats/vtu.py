@@ -53,9 +53,9 @@ def write(drop: Drop) -> dict[str, bytes]:
     if drop.plate_size is None:
         return files
     boxes = [_box(drop.plate_size, at) for at in _plate_path(drop, times)]
-    return files | (
-        {"plate.vtu": boxes[0]} if drop.motion is None else _series("plate", times, boxes)
-    )
+    if drop.motion is None:  # one is enough
+        return files | {"plate.vtu": boxes[0]}
+    return files | _series("plate", times, boxes)
 
 
 def _sphere_path(drop: Drop) -> tuple[Floats, Floats]:
@@ -80,8 +80,10 @@ def _sphere_path(drop: Drop) -> tuple[Floats, Floats]:
 
 def _plate_path(drop: Drop, times: Floats) -> Floats:
     """Return how far the supports of the plate have moved at times [s] (frames, 3) [m]."""
-    moved = np.zeros_like(times) if drop.motion is None else drop.motion.at(times)[0]
-    return np.outer(moved, (0.0, 0.0, 1.0) if drop.motion is None else drop.motion.direction)
+    if drop.motion is None:
+        return np.zeros((len(times), 3))
+    displacement, *_ = drop.motion.at(times)
+    return np.outer(displacement, drop.motion.direction)
 
 
 def _times(drop: Drop) -> Floats:
@@ -110,7 +112,10 @@ def _series(name: str, times: Floats, texts: list[bytes]) -> dict[str, bytes]:
 def _text(
     points: NDArray[np.float32], cells: NDArray[np.int32], moved: NDArray[np.float32] | None = None
 ) -> bytes:
-    return _file(points, cells, _QUADRILATERAL, {} if moved is None else {"displacement_m": moved})
+    fields = {}
+    if moved is not None:
+        fields["displacement_m"] = moved
+    return _file(points, cells, _QUADRILATERAL, fields)
 
 
 def _file(

@@ -27,13 +27,12 @@ def write(drop: Drop) -> dict[str, bytes]:
         If there is no sensor, or WAV can't represent its rate or its length.
     """
     if not drop.signals:
-        elastic = (
-            "" if "plate" in drop.elastic else 'an elastic plate (plate.model = "elastic") and '
-        )
-        remedy = f"give the case {elastic}[[sensors]]"
+        needed = "[[sensors]]"
+        if "plate" not in drop.elastic:
+            needed = f'an elastic plate (plate.model = "elastic") and {needed}'
         raise InputError(
             f'"{one_line(drop.name)}" has no sensors, and a WAV file holds the signal of '
-            f"one; {remedy}"
+            f"one; give the case {needed}"
         )
     return {
         f"{plain}.wav": _file(drop.signals[name])

@@ -27,7 +27,12 @@ from vibroimpact.exporting.contact_parameters import (
 from vibroimpact.exporting.deck import render_deck
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, file_name
-from vibroimpact.exporting.program_friction import friction_in, friction_notes, spring_of_overlap
+from vibroimpact.exporting.program_friction import (
+    coefficient_of,
+    friction_in,
+    friction_notes,
+    spring_of_overlap,
+)
 from vibroimpact.exporting.rigid_drop import as_rigid
 from vibroimpact.files.plain_names import plain_words
 
@@ -111,8 +116,7 @@ def _deck(drop: Drop) -> str:
     stiffness, _ = linear_or_hertzian(drop, "YADE")
     duration, _ = first_contact(laws[0], drop)
     oblique = drop.oblique or Oblique()
-    friction = _friction(drop)
-    friction_coefficient = 0.0 if friction is None else float(friction.coefficient)
+    friction_coefficient = coefficient_of(_friction(drop))
     poissons_ratio = _poissons_ratio(drop)
     return render_deck(
         "yade.py.j2",
@@ -165,10 +169,13 @@ def _notes(drop: Drop) -> list[str]:
         )
     if isinstance(law, Hertz):
         return notes
-    same_damping = isinstance(law, (Tsuji, KelvinVoigtLaw))
     several = len(laws_of_impacts(drop)) > 1
-    where = "the speed of each impact of this drop" if several else "the first impact's speed"
-    difference = "differs in that it never pulls" if same_damping else "has another damping"
+    where = "the first impact's speed"
+    if several:
+        where = "the speed of each impact of this drop"
+    difference = "has another damping"
+    if isinstance(law, (Tsuji, KelvinVoigtLaw)):
+        difference = "differs in that it never pulls"
     notes.append(
         f"YADE's {_contact_functor(drop)} stands for {law.name}; it {difference}, so forces within "
         f"the contact differ. Its restitution is the law's at {where}, and with a given "
