@@ -54,8 +54,10 @@ def main() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)
     except OSError as error:
-        file = f"{shortened(visible(str(error.filename)), 200)}: " if error.filename else ""
-        fail(f"{file}the computer says: {error.strerror or error}", 1)
+        fault = f"the computer says: {error.strerror or error}"
+        if error.filename:
+            fault = f"{shortened(visible(str(error.filename)), 200)}: {fault}"
+        fail(fault, 1)
 
 
 def _isolate_matplotlib() -> None:

@@ -62,7 +62,7 @@ def bound(
     from vibroimpact.studies.computation.study import load_study
     from vibroimpact.studies.planning.sweep_file import load_sweep
 
-    target = Path(f"{stem(population)}-bound") if output is None else output
+    target = output or Path(f"{stem(population)}-bound")
     check_free(target, force=force)
     band = quantity_in("--bandwidth", bandwidth, "Hz")
     if not 10.0 <= band <= 1e7:

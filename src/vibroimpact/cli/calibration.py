@@ -93,7 +93,7 @@ def calibrate(
     """
     from vibroimpact.files.result_folder import check_free
 
-    target = Path(f"{stem(case)}-calibrated") if output is None else output
+    target = output or Path(f"{stem(case)}-calibrated")
     options_of_records = {
         "--channel": channel,
         "--gravity": gravity,
@@ -181,9 +181,15 @@ def _rebounds_in(
     from vibroimpact.signals.bounces.find import find_bounces
     from vibroimpact.signals.reading.one_record import one_record
 
-    contact_duration = BRIEF if contact is None else written_in("--contact", contact, "s")
-    acceleration = None if gravity is None else written_in("--gravity", gravity, "m/s^2")
-    drop_height = None if height is None else written_in("--height", height, "m")
+    contact_duration = BRIEF
+    acceleration = None
+    drop_height = None
+    if contact is not None:
+        contact_duration = written_in("--contact", contact, "s")
+    if gravity is not None:
+        acceleration = written_in("--gravity", gravity, "m/s^2")
+    if height is not None:
+        drop_height = written_in("--height", height, "m")
     record = one_record(path, channel, columns)
     try:
         bounces = find_bounces(record, contact_duration)

@@ -69,7 +69,7 @@ def compare(
     from vibroimpact.law_comparison.comparison import compare_laws
 
     compared_case = load_case(case)
-    target = Path(f"{stem(case)}-compared") if output is None else output
+    target = output or Path(f"{stem(case)}-compared")
     check_free(target, force=force)
     with progress_of("comparing", as_json=as_json) as progress:
         comparison = compare_laws(

@@ -106,9 +106,11 @@ def correlate(
     from vibroimpact.test_analysis.compared_kind import compared_kind
 
     test_case = load_case(case, settings_of(changes))
-    target = Path(f"{stem(case)}-correlated") if output is None else output
+    target = output or Path(f"{stem(case)}-correlated")
     check_free(target, force=force)
-    window_length = None if window is None else quantity_in("--window", window, "s")
+    window_length = None
+    if window is not None:
+        window_length = quantity_in("--window", window, "s")
     band_ends = None
     if band is not None:
         band_ends = pair_in("--band", band, "Hz", "a lower and an upper frequency", "100 Hz, 5 kHz")
@@ -141,7 +143,9 @@ def _correlated_records(
     """Return the comparison of records with the simulation of a case."""
     from vibroimpact.test_analysis.correlate import correlate as correlate_records
 
-    force = None if force_channel is None else _force_among(records, force_channel)
+    force = None
+    if force_channel is not None:
+        force = _force_among(records, force_channel)
     motions = [record for record in records if record is not force]
     with progress_of("correlating", as_json=as_json) as progress:
         return correlate_records(

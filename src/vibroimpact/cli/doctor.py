@@ -36,6 +36,8 @@ def diagnose() -> dict[str, Any]:
     """
     folder = store_folder()
     usable = _is_usable(folder)
+    entry_count = len(entries()) if usable else 0
+    size = store_size() if usable else 0
     return {
         "version": __version__,
         "python": platform.python_version(),
@@ -44,8 +46,8 @@ def diagnose() -> dict[str, Any]:
         "store": {
             "folder": str(folder),
             "usable": usable,
-            "entries": len(entries()) if usable else 0,
-            "size_byte": store_size() if usable else 0,
+            "entries": entry_count,
+            "size_byte": size,
         },
         "compiler": _compiler(),
         "usage_data": {
@@ -123,7 +125,9 @@ def _installed(name: str) -> str | None:
 
 
 def _missing(extra: str) -> str:
-    return f'not installed; pip install "vibroimpact[{extra}]"' if extra else "missing"
+    if not extra:
+        return "missing"
+    return f'not installed; pip install "vibroimpact[{extra}]"'
 
 
 def _usage_state(usage: Mapping[str, Any]) -> str:

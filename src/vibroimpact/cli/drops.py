@@ -141,9 +141,13 @@ def _run(
     from vibroimpact.runs.paraview import PARAVIEW, write_paraview
     from vibroimpact.studies.planning.sweep_file import load_drop
 
-    case = load_case(name, changes) if drop is None else load_drop(name, drop, changes)
-    default_folder = stem(name) if drop is None else f"{stem(name)}-drop-{drop}"
-    target = Path(default_folder) if output is None else output
+    if drop is None:
+        case = load_case(name, changes)
+        default_folder = stem(name)
+    else:
+        case = load_drop(name, drop, changes)
+        default_folder = f"{stem(name)}-drop-{drop}"
+    target = output or Path(default_folder)
     check_free(target, force=force)  # fail before the computation
     if case.sweep is not None:
         phrase = (
@@ -165,13 +169,15 @@ def _run(
             # made
             del response
             with patient_progress("drawing figures", screen) as progress:
-                fill_folder(result.report, folder, ("png",) if figures else (), progress)
+                formats = ("png",) if figures else ()
+                fill_folder(result.report, folder, formats, progress)
+    beside = "figures" if figures else ""
     show_folder(
         target,
         lambda: result.document,
         lambda: terminal_report(result.report),
         as_json=as_json,
-        beside="figures" if figures else "",
+        beside=beside,
     )
 
 
@@ -207,7 +213,7 @@ def modes(
     from vibroimpact.modes.report import report_of
     from vibroimpact.report.progress import patient_progress
 
-    target = Path(f"{stem(case)}-modes") if output is None else output
+    target = output or Path(f"{stem(case)}-modes")
     if Path(case).is_file() and is_universal(case):
         if changes:
             raise InputError(f"{case} is a measurement, which has no keys; leave it out", "--set")
@@ -224,16 +230,13 @@ def modes(
     with exit_on_interrupt():
         with patient_progress("computing modes", screen) as progress:
             bodies = prefix_errors(case, lambda: compute_modes(loaded, progress, note))
-        beside = modes_beside_table(bodies, measured) if measured else None
-        report = report_of(bodies, beside)
-    write_and_show(
-        report,
-        target,
-        force=force,
-        figures=figures,
-        as_json=as_json,
-        beside=("modes.csv and meshes" if beside is None else "modes.csv, measured.csv and meshes"),
-    )
+        files = "modes.csv and meshes"
+        measured_table = None
+        if measured:
+            files = "modes.csv, measured.csv and meshes"
+            measured_table = modes_beside_table(bodies, measured)
+        report = report_of(bodies, measured_table)
+    write_and_show(report, target, force=force, figures=figures, as_json=as_json, beside=files)
 
 
 @app.command()
@@ -295,4 +298,5 @@ def modes_beside_table(bodies: Mapping[str, BodyModes], paths: Sequence[Path]) -
     from vibroimpact.test_analysis.measured.modes_of_file import modes_beside
     from vibroimpact.test_analysis.measured.report import compared_table
 
-    return compared_table(modes_beside(bodies["plate"].basis if "plate" in bodies else None, paths))
+    basis = bodies["plate"].basis if "plate" in bodies else None
+    return compared_table(modes_beside(basis, paths))

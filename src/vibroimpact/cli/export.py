@@ -66,7 +66,7 @@ def export(
             f"name the folder that is to be exported: vibroimpact export DIR --to {to}"
         )
     drop = export_format.prepare(load_drop(directory))
-    target = default_output(directory, to) if output is None else output
+    target = output or default_output(directory, to)
     files = save_export(drop, export_format, target, force=force)
     show(
         lambda: export_document(drop, export_format, files),

@@ -94,7 +94,9 @@ def table_summary(table: RecordTable) -> RenderableType:
     units = {record.unit for record in table.records}
     unit = units.pop() if len(units) == 1 else _SIGNAL
     rows = [*_feature_rows(table, unit), *_baseline_rows(table, unit)]
-    number_heads = ("least", "median", "largest") if len(table.records) > 1 else ("value",)
+    number_heads = ["value"]
+    if len(table.records) > 1:
+        number_heads = ["least", "median", "largest"]
     columns = [TerminalColumn("feature", [row.name for row in rows], text=True)]
     for position, head in enumerate(number_heads):
         columns.append(TerminalColumn(head, [row.numbers[position] for row in rows]))

@@ -124,7 +124,9 @@ def features(
     if names == []:
         raise InputError("--only names no feature; --list lists them")
     silence = quantity_in("--dead-time", dead_time, "s")
-    length = None if window is None else quantity_in("--window", window, "s")
+    length = None
+    if window is not None:
+        length = quantity_in("--window", window, "s")
     records = _records(paths, columns, threshold, silence, length, packets=packets)
     screen = console(err=as_json)
     with exit_on_interrupt(), counting_progress("signals", screen) as count:
@@ -136,8 +138,10 @@ def features(
             progress=lambda done: count(done, None),
         )
     if not table.records:
-        condition = " with a packet above the threshold" if packets else ""
-        raise InputError(f"there are no signals{condition}")
+        fault = "there are no signals"
+        if packets:
+            fault += " with a packet above the threshold"
+        raise InputError(fault)
     if output is not None:
         _write_table(table, output)
     show(lambda: table_document(table), lambda: table_summary(table), as_json=as_json)

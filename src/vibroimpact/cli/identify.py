@@ -121,7 +121,7 @@ def identify(
     from vibroimpact.signals.reading.record_files import load_records
 
     plate_case = load_case(case, settings_of(changes))
-    target = Path(f"{stem(case)}-identified") if output is None else output
+    target = output or Path(f"{stem(case)}-identified")
     check_free(target, force=force)
     position = None
     if place is not None:

@@ -59,8 +59,10 @@ def material_sheet(name: str) -> RenderableType:
         if value is not None:
             quantity = f"{value:g}\u00a0{unit}".strip("\u00a0")
             rows.append((key, quantity, material.sources.get(key, "")))
-    note = [Text(material.note)] if material.note else []
-    return Group(Text(f"{material.name}: {material.description}", style="bold"), facts(rows), *note)
+    title = Text(f"{material.name}: {material.description}", style="bold")
+    if not material.note:
+        return Group(title, facts(rows))
+    return Group(title, facts(rows), Text(material.note))
 
 
 def materials_document() -> dict[str, Any]:

@@ -87,9 +87,11 @@ def recognise(
     from vibroimpact.recognition.apply import apply_recogniser
     from vibroimpact.recognition.recognise import recognise as recognise_signals
 
-    folder = Path(dataset).parent if dataset.endswith(".nc") else Path(dataset)
+    folder = Path(dataset)
+    if dataset.endswith(".nc"):
+        folder = folder.parent
     name = stem(str(folder))
-    target = Path(f"{name}-recognised") if output is None else output
+    target = output or Path(f"{name}-recognised")
     check_free(target, force=force)
     _check_outside(target, Path(dataset))
     if model is not None:

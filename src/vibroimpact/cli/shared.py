@@ -240,8 +240,9 @@ def write_and_show(
     from vibroimpact.report.save_report import save_report
     from vibroimpact.report.terminal_report import terminal_report
 
+    formats = ("png",) if figures else ()
     with exit_on_interrupt():
-        folder = save_report(report, target, force=force, figures=("png",) if figures else ())
+        folder = save_report(report, target, force=force, figures=formats)
     show_folder(
         folder,
         lambda: report.document,

@@ -160,12 +160,12 @@ def _interruptible(
     **options: Any,
 ) -> None:
     """Run a study; after Ctrl-C tell the command that goes on."""
-    target = Path(f"{stem(study)}-{command}") if output is None else output
-    told = "" if scheduler is None else f" --scheduler {shlex.quote(scheduler)}"
-    told += "" if samples is None else f" --samples {samples}"
-    again = (
-        f"vibroimpact {command} {shlex.quote(study)} -o {shlex.quote(str(target))} --resume{told}"
-    )
+    target = output or Path(f"{stem(study)}-{command}")
+    again = f"vibroimpact {command} {shlex.quote(study)} -o {shlex.quote(str(target))} --resume"
+    if scheduler is not None:
+        again += f" --scheduler {shlex.quote(scheduler)}"
+    if samples is not None:
+        again += f" --samples {samples}"
     message = f"interrupted; completed drops are kept; continue with: {again}"
     try:
         # entered first, so that no Ctrl-C is lost during imports
@@ -263,12 +263,11 @@ def _run_sweep(
         lambda: terminal_report(completed.report),
         as_json=as_json,
     )
-    written = ["study.nc", *(["card.md"] if completed.labels else []), "report.html"]
-    say(
-        f"wrote {', '.join(str(folder / name) for name in written[:-1])} and "
-        f"{folder / written[-1]}",
-        err=as_json,
-    )
+    written = ["study.nc"]
+    if completed.labels:
+        written.append("card.md")
+    paths = ", ".join(str(folder / name) for name in written)
+    say(f"wrote {paths} and {folder / 'report.html'}", err=as_json)
 
 
 def _check_labelled(study: str, sweep: Sweep) -> None:
@@ -307,4 +306,6 @@ def _check_confirmed(study: str, sweep: Sweep, *, yes: bool) -> None:
 
 def _cores() -> int:
     """Return the number of cores available to this process."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1  # macOS and Windows do not tell which are allowed
