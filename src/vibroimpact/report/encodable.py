@@ -82,21 +82,26 @@ def encodable(phrase: str, encoding: str) -> str:
         return encodable(phrase, "ascii")
     else:
         return phrase
-    phrase = _TIMES_TEN.sub(
-        lambda match: (
-            match[0] if _can_encode(encoding, match[0]) else f"e{match[1].translate(_PLAIN_RAISED)}"
-        ),
-        phrase,
-    )
-    phrase = _RAISED.sub(
-        lambda match: (
-            match[0] if _can_encode(encoding, match[0]) else f"^{match[0].translate(_PLAIN_RAISED)}"
-        ),
-        phrase,
-    )
-    return "".join(
-        letter if _can_encode(encoding, letter) else _replacement(letter) for letter in phrase
-    )
+
+    def plain_power_of_ten(match: re.Match[str]) -> str:
+        if _can_encode(encoding, match[0]):
+            return match[0]
+        return f"e{match[1].translate(_PLAIN_RAISED)}"
+
+    def plain_exponent(match: re.Match[str]) -> str:
+        if _can_encode(encoding, match[0]):
+            return match[0]
+        return f"^{match[0].translate(_PLAIN_RAISED)}"
+
+    # powers of ten first, whose exponents are raised digits too
+    phrase = _TIMES_TEN.sub(plain_power_of_ten, phrase)
+    phrase = _RAISED.sub(plain_exponent, phrase)
+    letters = []
+    for letter in phrase:
+        if not _can_encode(encoding, letter):
+            letter = _replacement(letter)
+        letters.append(letter)
+    return "".join(letters)
 
 
 def _can_encode(encoding: str, phrase: str) -> bool:
@@ -112,10 +117,11 @@ def _replacement(letter: str) -> str:
     if letter in _REPLACEMENTS:
         return _REPLACEMENTS[letter]
     if greek := _GREEK.match(unicodedata.name(letter, "")):
-        return greek[2].lower() if greek[1] == "SMALL" else greek[2].capitalize()
-    bare = "".join(
-        part for part in unicodedata.normalize("NFKD", letter) if not unicodedata.combining(part)
-    )
+        name = greek[2]
+        return name.lower() if greek[1] == "SMALL" else name.capitalize()
+    # a letter without its accents
+    parts = unicodedata.normalize("NFKD", letter)
+    bare = "".join(part for part in parts if not unicodedata.combining(part))
     if bare and _can_encode("ascii", bare):
         return bare
     return letter.encode("ascii", "backslashreplace").decode("ascii")

@@ -27,13 +27,14 @@ def html_table(
     <table><thead><tr><th>Key</th><th>Force<br>[N]</th></tr></thead><tbody><tr><td>a</td><td>1</td></tr></tbody></table>
     """
     head = _joined(_header(header) for header in headers)
-    lines = (
-        Markup('<td colspan="{}">{}</td>').format(len(headers), visible(row))
-        if isinstance(row, str)
-        else _cells(row)
-        for row in rows
-    )
-    body = _joined(Markup("<tr>{}</tr>").format(line) for line in lines)
+    lines = []
+    for row in rows:
+        if isinstance(row, str):  # over the whole width
+            cells = Markup('<td colspan="{}">{}</td>').format(len(headers), visible(row))
+        else:
+            cells = _cells(row)
+        lines.append(Markup("<tr>{}</tr>").format(cells))
+    body = _joined(lines)
     return Markup("<table><thead><tr>{}</tr></thead><tbody>{}</tbody></table>").format(head, body)
 
 
@@ -41,7 +42,8 @@ def _header(header: str | tuple[str, str]) -> Markup:
     if isinstance(header, str):
         return Markup("<th>{}</th>").format(visible(header))
     name, unit = header
-    return Markup("<th>{}<br>{}</th>").format(visible(name), f"[{visible(unit)}]" if unit else "")
+    bracketed = f"[{visible(unit)}]" if unit else ""
+    return Markup("<th>{}<br>{}</th>").format(visible(name), bracketed)
 
 
 def _cells(row: Sequence[str]) -> Markup:

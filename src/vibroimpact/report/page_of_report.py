@@ -20,11 +20,13 @@ def page_of_report(report: Report) -> str:
     >>> '<p class="status">They collide.</p>' in page
     True
     """
-    scene = next(iter(report.scenes), None)
+    scene = None
+    if report.scenes:
+        scene = dict(report.scenes[0].data)
     return render_page(
         __package__,
         report.page_charts,
-        None if scene is None else dict(scene.data),
+        scene,
         name=report.title[:1].upper() + report.title[1:],
         report=report,
     )

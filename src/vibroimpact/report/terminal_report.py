@@ -112,7 +112,10 @@ def block_lines(block: Block) -> Iterator[RenderableType]:
         table = block.short or block
         if table.title:
             yield Text(table.title, style="bold")
-        yield _FittedTable(table) if table.expendable else _terminal_table(table, table.columns)
+        if table.expendable:
+            yield _FittedTable(table)
+        else:
+            yield _terminal_table(table, table.columns)
     elif isinstance(block, Facts):
         yield facts(block.rows, indent=1)
     elif isinstance(block, Heading):
@@ -159,12 +162,15 @@ def _terminal_table(table: Table, columns: Sequence[Column]) -> TerminalTable:
 
 
 def _terminal_columns(columns: Iterable[Column]) -> list[TerminalColumn]:
-    return [
-        TerminalColumn(column.heading, column.cells, text=True, least_width=column.least_width)
-        if column.is_text
-        else numbers(column.heading, column.unit, column.cells)
-        for column in columns
-    ]
+    return [_terminal_column(column) for column in columns]
+
+
+def _terminal_column(column: Column) -> TerminalColumn:
+    if column.is_text:
+        return TerminalColumn(
+            column.heading, column.cells, text=True, least_width=column.least_width
+        )
+    return numbers(column.heading, column.unit, column.cells)
 
 
 def warning_lines(warnings: Iterable[str]) -> list[RenderableType]:

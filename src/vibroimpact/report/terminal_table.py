@@ -6,6 +6,7 @@ import re
 import textwrap
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 
 from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, RenderResult
@@ -52,12 +53,12 @@ class TerminalColumn:
 
 def numbers(heading: str, unit: str, cells: Sequence[str]) -> TerminalColumn:
     """Return a column of numbers with the unit in brackets below the heading."""
-    return TerminalColumn(
-        "\n".join(
-            part for part in (heading, f"[{unit.replace(' ', _NO_BREAK)}]" if unit else "") if part
-        ),
-        cells,
-    )
+    lines = []
+    if heading:
+        lines.append(heading)
+    if unit:
+        lines.append(f"[{unit.replace(' ', _NO_BREAK)}]")
+    return TerminalColumn("\n".join(lines), cells)
 
 
 @dataclass(frozen=True)
@@ -118,24 +119,19 @@ class TerminalTable:
         for number, block in enumerate(blocks):
             if number:
                 yield "", ""
-            for line, style in _block(
-                block,
-                below if number == len(blocks) - 1 else [],
-                width - self.indent,
-                set(self.bold),
-            ):
+            below_block = below if number == len(blocks) - 1 else []
+            for line, style in _block(block, below_block, width - self.indent, set(self.bold)):
                 yield f"{' ' * self.indent}{line}".rstrip(), style
 
 
 def with_gap(columns: Sequence[TerminalColumn], row: int) -> list[TerminalColumn]:
     """Return columns with an ellipsis row inserted before a row, to mark omitted rows."""
+    marks = ["...", *([""] * (len(columns) - 1))]
     return [
         TerminalColumn(
-            column.heading,
-            [*column.cells[:row], "" if place else "...", *column.cells[row:]],
-            column.text,
+            column.heading, [*column.cells[:row], mark, *column.cells[row:]], column.text
         )
-        for place, column in enumerate(columns)
+        for mark, column in zip(marks, columns, strict=False)
     ]
 
 
@@ -231,16 +227,13 @@ def _aligned(column: TerminalColumn) -> list[str]:
     """
     if column.text:
         return list(column.cells)
-    matches = [_NUMBER.match(cell) for cell in column.cells]
-    behind = [
-        len(cell) - (len(match[0].split(".")[0]) if match else len(cell))
-        for cell, match in zip(column.cells, matches, strict=True)
-    ]
-    most = max((after for after, match in zip(behind, matches, strict=True) if match), default=0)
-    return [
-        cell + " " * (most - after if match else 0)
-        for cell, after, match in zip(column.cells, behind, matches, strict=True)
-    ]
+    # the number of characters from the decimal point on, of each cell with a number
+    behind: dict[int, int] = {}
+    for row, cell in enumerate(column.cells):
+        if match := _NUMBER.match(cell):
+            behind[row] = len(cell) - len(match[0].split(".")[0])
+    most = max(behind.values(), default=0)
+    return [cell + " " * (most - behind.get(row, most)) for row, cell in enumerate(column.cells)]
 
 
 def _block(
@@ -250,12 +243,10 @@ def _block(
     if any(column.heading for column, _ in block):
         wrapped = [_wrapped(column.heading, taken) for column, taken in block]
         high = max(map(len, wrapped))
-        for line in range(high):
-            cells = [
-                lines[line - high + len(lines)] if line >= high - len(lines) else ""
-                for lines in wrapped
-            ]
-            yield _row(block, cells), "bold"
+        # short headings stand on the last lines
+        raised = [[""] * (high - len(lines)) + lines for lines in wrapped]
+        for headings in zip(*raised, strict=True):
+            yield _row(block, headings), "bold"
     aligned = [_aligned(column) for column, _ in block]
     for number in range(len(block[0][0].cells)):
         cells_of = [
@@ -263,21 +254,19 @@ def _block(
             for cells, (column, taken) in zip(aligned, block, strict=True)
         ]
         style = "bold" if number in bold else ""
-        for line in range(max(map(len, cells_of))):
-            yield (
-                _row(block, [lines[line] if line < len(lines) else "" for lines in cells_of]),
-                style,
-            )
+        for line_cells in zip_longest(*cells_of, fillvalue=""):
+            yield _row(block, line_cells), style
         for column in below:
-            if column.cells[number]:
-                if column.heading:
-                    said = f"{column.heading}: {column.cells[number]}"
-                else:
-                    said = column.cells[number]
-                yield from ((f"    {line}", style) for line in _wrapped(said, width - 4))
+            phrase = column.cells[number]
+            if not phrase:
+                continue
+            if column.heading:
+                phrase = f"{column.heading}: {phrase}"
+            for line in _wrapped(phrase, width - 4):
+                yield f"    {line}", style
 
 
-def _row(block: list[tuple[TerminalColumn, int]], cells: list[str]) -> str:
+def _row(block: list[tuple[TerminalColumn, int]], cells: Sequence[str]) -> str:
     """Return one line of a block."""
     filled = []
     for (column, taken), cell in zip(block, cells, strict=True):
