@@ -59,7 +59,7 @@ def write_csv(rows: Iterable[Mapping[str, Any]], columns: Sequence[str], path: P
         writer = csv.DictWriter(file, columns, lineterminator="\n")
         writer.writeheader()
         for row in rows:
-            writer.writerow({name: "" if cell is None else cell for name, cell in row.items()})
+            writer.writerow(row)
 
 
 def write_rows(rows: Sequence[dict[str, Any]], path: Path) -> None:

@@ -177,11 +177,12 @@ def _result_from(
     history = {key: groups["history"][key] for key in history_columns(groups["history"])}
     _check_history(history)
     for group, columns in (("impacts", impacts), ("history", history)):
-        if (
-            len({column.shape for column in columns.values()}) != 1
-            or next(iter(columns.values())).ndim != 1
-        ):
+        shapes = {column.shape for column in columns.values()}
+        if len(shapes) != 1 or len(shapes.pop()) != 1:
             raise ValueError(f"the columns of {group} differ in length")
+    truncation = {}
+    for body, error in summary.get("truncation", {}).items():
+        truncation[body] = math.nan if error is None else float(error)  # JSON has no NaN
     return Result(
         case,
         impacts,
@@ -190,10 +191,7 @@ def _result_from(
         summary["status"],
         dict(summary["provenance"]),
         dict(summary.get("deformation", {})),
-        {
-            body: math.nan if value is None else float(value)
-            for body, value in summary.get("truncation", {}).items()
-        },
+        truncation,
         {body: dict(summary[body]) for body in ("sphere", "plate") if body in summary},
         groups["sensors"],
         groups["deflection"]["deflection"],
@@ -204,9 +202,9 @@ def _check_history(history: Mapping[str, Any]) -> None:
     """Raise KeyError if a history lacks a column that every one has, or one of those that
     it has where a body vibrates.
     """
-    needed = set(HISTORY_COLUMNS) | (
-        set(VIBRATION_HISTORY_COLUMNS) if history.keys() & set(VIBRATION_HISTORY_COLUMNS) else set()
-    )
+    needed = set(HISTORY_COLUMNS)
+    if history.keys() & set(VIBRATION_HISTORY_COLUMNS):
+        needed |= set(VIBRATION_HISTORY_COLUMNS)
     missing = sorted(needed - history.keys())
     if missing:
         raise KeyError(f"no {', '.join(missing)}")

@@ -160,13 +160,15 @@ def read_signals(file: h5py.File) -> dict[str, Signal]:
         attributes = group.attrs
         x, y, z = (float(component) for component in attributes["direction"])
         corner = attributes.get("filter_corner_Hz")
+        if corner is not None:
+            corner = float(corner)
         sensor = Sensor(
             str(attributes["name"]),
             quantity=attributes["quantity"],
             direction=(x, y, z),
             rate=float(attributes["rate_Hz"]),
             filter=str(attributes.get("filter", "none")),
-            corner=None if corner is None else float(corner),
+            corner=corner,
         )
         value = _numbers(members(group)["value"])
         if value.ndim != 1 or not 0.0 < sensor.rate < np.inf:
