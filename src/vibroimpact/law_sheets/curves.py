@@ -72,18 +72,15 @@ def law_chart(law: type[ContactLaw]) -> Chart:
     example = _example(law)
     restitution = achieved_restitution(example.law, example.pair.effective_mass, _SPEEDS)
     speeds = _typical_speeds(law, restitution)
-    compliant = isinstance(example.law, CompliantLaw)
-    panels = (
-        *([_force_panel(example, speeds)] if compliant else []),
-        _restitution_panel(example, restitution, speeds),
-    )
+    panels = [_restitution_panel(example, restitution, speeds)]
     caption = "Right: the restitution achieved at any approach speed."
-    if compliant:
+    if isinstance(example.law, CompliantLaw):
+        panels.insert(0, _force_panel(example, speeds))
         caption = (
             "Left: one impact at each of three approach speeds; the area enclosed by a loop "
             f"is the energy lost. {caption}"
         )
-    return Chart(law.name, law.name, (panels,), caption, _HEIGHT, _subtitle(example))
+    return Chart(law.name, law.name, (tuple(panels),), caption, _HEIGHT, _subtitle(example))
 
 
 def check_picture(target: Path, *, force: bool) -> None:

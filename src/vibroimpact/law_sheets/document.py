@@ -43,7 +43,9 @@ def law_document(law: type[ContactLaw | FrictionLaw]) -> dict[str, Any]:
     numbers = {
         item.name: item.default for item in fields(law) if isinstance(item.default, (int, float))
     }
-    pairs = asked_and_achieved(law) if issubclass(law, ContactLaw) else []
+    pairs = []
+    if issubclass(law, ContactLaw):
+        pairs = asked_and_achieved(law)
     return {
         **asdict(text),
         "title": plain_paragraph(text.title),

@@ -86,8 +86,10 @@ def law_page(law: type[ContactLaw]) -> str:
             text.persistence,
         ]
     parts += ["## End of the contact", f"{text.end} {text.tension}".strip()]
-    parts += ["## Departure from the source", text.departure] if text.departure else []
-    parts += ["## Notes", *map(_marked, text.notes)] if text.notes else []
+    if text.departure:
+        parts += ["## Departure from the source", text.departure]
+    if text.notes:
+        parts += ["## Notes", *map(_marked, text.notes)]
     pairs = asked_and_achieved(law)
     if pairs:
         parts += [
@@ -133,13 +135,15 @@ def write_law_pages(docs_dir: str | PathLike[str]) -> list[Path]:
 def _table_of(laws: Iterable[type[ContactLaw]]) -> str:
     rows = []
     for law in laws:
-        end, tension = (
-            (_ENDS[law.contact_end], _TENSION[law.tension])
-            if issubclass(law, CompliantLaw)
-            else ("instantaneous", "")
-        )
-        equation = law.equation.replace("|", r"\|")
-        source = f"{short_sources(law)}; changed" if law.departure else short_sources(law)
+        end = "instantaneous"
+        tension = ""
+        if issubclass(law, CompliantLaw):
+            end = _ENDS[law.contact_end]
+            tension = _TENSION[law.tension]
+        equation = law.equation.replace("|", r"\|")  # which would end a cell of the table
+        source = short_sources(law)
+        if law.departure:
+            source += "; changed"
         rows.append((f"[`{law.name}`](laws/{law.name}.md)", f"`{equation}`", end, tension, source))
     return _table(("law", "force, or restitution", "contact ends", "tensile force", "source"), rows)
 

@@ -71,7 +71,9 @@ def plain_math(latex: str) -> str:
 
 def _grouped(part: str) -> str:
     part = part.strip()
-    return part if re.fullmatch(r"[\w*.]+", part) else f"({part})"
+    if re.fullmatch(r"[\w*.]+", part):
+        return part
+    return f"({part})"
 
 
 def _spaced(text: str) -> str:

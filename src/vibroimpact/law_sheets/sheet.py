@@ -11,6 +11,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.contact.friction.registry import friction_laws
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.registry import contact_laws, find_contact_law
@@ -34,21 +35,13 @@ def law_table(width: int) -> RenderableType:
     """Return the tables of contact and friction laws for a terminal width in columns."""
     rows = []
     for name, law in contact_laws().items():
-        end, tension = (
-            ("instantaneous", "-")
-            if not issubclass(law, CompliantLaw)
-            else (_ENDS[law.contact_end], _TENSION[law.tension])
-        )
-        source = law.source if width >= _WIDE else short_source(law)
-        rows.append(
-            (
-                name,
-                law_text(law).loss_parameters.replace("nothing is lost", "-"),
-                end,
-                tension,
-                source,
-            )
-        )
+        end = "instantaneous"
+        tension = "-"
+        if issubclass(law, CompliantLaw):
+            end = _ENDS[law.contact_end]
+            tension = _TENSION[law.tension]
+        loss_parameters = law_text(law).loss_parameters.replace("nothing is lost", "-")
+        rows.append((name, loss_parameters, end, tension, _source_at(width, law)))
     headings = ("law", "loss parameter", "end of contact", "tension", "source")
     table = TerminalTable(
         [
@@ -64,12 +57,16 @@ def law_table(width: int) -> RenderableType:
     return Group(table, Text(), _friction_table(width), Text(), Text(hint))
 
 
+def _source_at(width: int, law: type[ContactLaw | FrictionLaw]) -> str:
+    """Return the source of a law as it fits into a terminal."""
+    if width >= _WIDE:
+        return law.source
+    return short_source(law)
+
+
 def _friction_table(width: int) -> RenderableType:
     """Return the table of friction laws for a terminal width in columns."""
-    rows = [
-        (name, law.equation, law.source if width >= _WIDE else short_source(law))
-        for name, law in friction_laws().items()
-    ]
+    rows = [(name, law.equation, _source_at(width, law)) for name, law in friction_laws().items()]
     headings = ("friction law", "equation", "source")
     cells = zip(*rows, strict=True)
     return TerminalTable(
@@ -92,37 +89,33 @@ def law_sheet(name: str) -> RenderableType:
     """
     law = friction_laws().get(name) or find_contact_law(name)
     text = law_text(law)
-    # the sheet prints `equation`
-    body = text.body[1:] if text.body and text.body[0].startswith(".. math::") else text.body
+    body = text.body
+    if body and body[0].startswith(".. math::"):
+        body = body[1:]  # the sheet prints `equation`
     parts: list[RenderableType] = [
         Text(f"{name}: {plain_paragraph(text.title)}", style="bold"),
         Text(),
         _indented(text.equation),
-        *([Text()] if body else []),
-        *_prose(body),
-        *_heading("Parameters"),
-        _parameters(text.parameters),
-        *(
-            _indented(f"Refused {plain_paragraph(line)[:1].lower()}{plain_paragraph(line)[1:]}")
-            for line in text.raises
-        ),
-        *_state(text),
-        *(
-            (*_heading("End of the contact"), _indented(f"{text.end} {text.tension}".strip()))
-            if text.end
-            else ()
-        ),
-        *(
-            (*_heading("Departure from the source"), _indented(text.departure))
-            if text.departure
-            else ()
-        ),
-        *(_heading("Notes") if text.notes else []),
-        *_prose(text.notes),
-        *(_achieved(law) if issubclass(law, ContactLaw) else ()),
-        *_heading("References"),
-        *(_indented(plain_paragraph(reference)) for reference in text.references or (text.source,)),
     ]
+    if body:
+        parts += [Text(), *_prose(body)]
+    parts += [*_heading("Parameters"), _parameters(text.parameters)]
+    for line in text.raises:
+        condition = plain_paragraph(line)
+        parts.append(_indented(f"Refused {condition[:1].lower()}{condition[1:]}"))
+    parts += _state(text)
+    if text.end:
+        end = _indented(f"{text.end} {text.tension}".strip())
+        parts += [*_heading("End of the contact"), end]
+    if text.departure:
+        parts += [*_heading("Departure from the source"), _indented(text.departure)]
+    if text.notes:
+        parts += [*_heading("Notes"), *_prose(text.notes)]
+    if issubclass(law, ContactLaw):
+        parts += _achieved(law)
+    parts += _heading("References")
+    for reference in text.references or (text.source,):
+        parts.append(_indented(plain_paragraph(reference)))
     return Group(*parts)
 
 
@@ -135,10 +128,11 @@ def _indented(phrase: str) -> RenderableType:
 
 
 def _prose(paragraphs: Iterable[str]) -> list[RenderableType]:
-    return [
-        _indented(("  " if paragraph.startswith("..") else "") + plain_paragraph(paragraph))
-        for paragraph in paragraphs
-    ]
+    lines = []
+    for paragraph in paragraphs:
+        margin = "  " if paragraph.startswith("..") else ""  # an equation
+        lines.append(_indented(margin + plain_paragraph(paragraph)))
+    return lines
 
 
 def _parameters(parameters: Iterable[ParameterText], *, given: bool = True) -> RenderableType:
@@ -148,17 +142,18 @@ def _parameters(parameters: Iterable[ParameterText], *, given: bool = True) -> R
     table = Table.grid(padding=(0, 2, 0, 0))
     table.add_column(no_wrap=True)
     for item in parameters:
-        facts = [
-            item.unit or "no unit",
-            *([item.allowed or "any number", _left_out(item.default)] if given else []),
-        ]
+        facts = [item.unit or "no unit"]
+        if given:
+            facts += [item.allowed or "any number", _left_out(item.default)]
         table.add_row(item.name, Text(plain_paragraph(item.meaning)))
         table.add_row("", Text("; ".join(facts), style="dim"))
     return Padding(table, (0, 0, 0, 2), expand=False)
 
 
 def _left_out(default: str) -> str:
-    return default if default.startswith(("required", "optional")) else f"if left out, {default}"
+    if default.startswith(("required", "optional")):
+        return default
+    return f"if left out, {default}"
 
 
 def _state(text: LawText) -> list[RenderableType]:

@@ -104,9 +104,14 @@ def law_text(law: type[ContactLaw | FrictionLaw]) -> LawText:
     """
     sections = docstring_sections(law.__doc__ or law.name)
     title, *body = _paragraphs(sections[""])
+    departure = ""
+    loss_parameters = ""
     end = ""
     tension = ""
     persistence = ""
+    if issubclass(law, ContactLaw):
+        departure = law.departure
+        loss_parameters = _loss_parameters(law)
     if issubclass(law, InstantaneousLaw):
         end = "The contact is instantaneous: it has no duration and no force."
     if issubclass(law, CompliantLaw):
@@ -122,8 +127,8 @@ def law_text(law: type[ContactLaw | FrictionLaw]) -> LawText:
         title=title,
         equation=law.equation,
         source=law.source,
-        departure=law.departure if issubclass(law, ContactLaw) else "",
-        loss_parameters=_loss_parameters(law) if issubclass(law, ContactLaw) else "",
+        departure=departure,
+        loss_parameters=loss_parameters,
         end=end,
         tension=tension,
         persistence=persistence,
@@ -212,8 +217,10 @@ def short_sources(law: type[ContactLaw]) -> str:
 
 def _short(source: str) -> str:
     parts = source.split(",")
-    dated = [number for number, part in enumerate(parts, 1) if _is_year(part.rpartition(" ")[2])]
-    return ",".join(parts[: dated[0] if dated else 1])
+    for number, part in enumerate(parts, 1):
+        if _is_year(part.rpartition(" ")[2]):
+            return ",".join(parts[:number])
+    return parts[0]
 
 
 def _is_year(word: str) -> bool:
@@ -230,7 +237,9 @@ def _loss_parameters(law: type[ContactLaw]) -> str:
     alternatives = [
         item.name for item in fields(law) if item.default is None and not item.metadata["from_pair"]
     ]
-    return " or ".join(alternatives) if free in alternatives else free
+    if free in alternatives:
+        return " or ".join(alternatives)
+    return free
 
 
 def _parameter_text(item: Field[Any]) -> ParameterText:
@@ -249,7 +258,9 @@ def _default(item: Field[Any]) -> str:
     if item.default is MISSING:
         typical = item.metadata["example"]
         return "required" if typical is None else f"required, such as {typical:g}"
-    return "optional" if item.default is None else f"{item.default:g}"
+    if item.default is None:
+        return "optional"
+    return f"{item.default:g}"
 
 
 def _paragraphs(text: str) -> list[str]:
