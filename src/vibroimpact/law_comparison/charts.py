@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from functools import partial
 
@@ -221,6 +222,8 @@ def spread_labels(places: Sequence[float], gap: float) -> list[float]:
     [0.1, 0.7, 0.74, 0.78]
     """
     positions: list[float] = []
+    lowest = -math.inf
     for place in places:
-        positions.append(max(place, positions[-1] + gap) if positions else place)
+        positions.append(max(place, lowest))
+        lowest = positions[-1] + gap
     return positions

@@ -105,11 +105,14 @@ def _case_under(
             # placeholder, valid only for the parameter that is tuned
             contact[key] = item.metadata["example"]
             placeholders.append(key)
-    own_name = case.name or "a drop"  # it may mention the law of the case
-    named = own_name if law.name == case.contact.law else f"{law.name} on the drop of: {own_name}"
+    name = case.name or "a drop"
+    if law.name != case.contact.law:
+        name = f"{law.name} on the drop of: {name}"  # as it may mention the law of the case
     of_case = resolved_case(case)
-    beside = {key: of_case["contact"][key] for key in _BESIDE_THE_LAW if key in of_case["contact"]}
-    table: dict[str, Any] = {**of_case, "name": named, "contact": {**contact, **beside}}
+    for key in _BESIDE_THE_LAW:
+        if key in of_case["contact"]:
+            contact[key] = of_case["contact"][key]
+    table: dict[str, Any] = {**of_case, "name": name, "contact": contact}
     try:
         found = case_of(table)
         tuned = contact_laws_of(found)[0].free_parameter
@@ -127,11 +130,10 @@ def _case_under(
             raise InputError(f"{tuned} is tuned to achieve {achieving:g}, so it can't be given too")
         return _tuned(found, table, tuned, achieving)
     except InputError as error:
+        message = str(error).removeprefix(f"{law.name} ")
         if "missing" in error.message or "needs" in error.message:
-            hint = " (give parameters with LAW.KEY=VALUE)"
-        else:
-            hint = ""
-        raise InputError(f"{law.name}: {str(error).removeprefix(f'{law.name} ')}{hint}") from None
+            message += " (give parameters with LAW.KEY=VALUE)"
+        raise InputError(f"{law.name}: {message}") from None
 
 
 def _can_be_left_out(

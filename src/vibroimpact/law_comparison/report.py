@@ -44,6 +44,7 @@ def report_of(comparison: Comparison) -> Report:
     ('One drop with 2 contact laws', ['comparison.csv', 'cases/tsuji.toml', 'cases/flores.toml'])
     """
     number = len(comparison.results)
+    laws = "law" if number == 1 else "laws"
     summary = _summary(comparison)
     cases = {
         name: {**entries, "case": comparison.results[name].case}
@@ -73,7 +74,7 @@ def report_of(comparison: Comparison) -> Report:
     loss = Section("loss", "Loss parameters, and end of each run", (Facts(free_parameters),))
     return Report(
         # without the name of the case, which may mention a law that is not compared
-        title=f"One drop with {number} contact law{'' if number == 1 else 's'}",
+        title=f"One drop with {number} contact {laws}",
         answer=_drop(comparison),
         sections=(impact, loss),
         charts=comparison_charts(comparison),
@@ -94,8 +95,10 @@ def report_of(comparison: Comparison) -> Report:
 def _drop(comparison: Comparison) -> str:
     """Return the sentence on the drop: its case and its first approach speed."""
     speeds = next(iter(comparison.results.values())).impacts["approach_speed_m_s"]
-    arrives = f", which arrives at {text(float(speeds[0]), 'm/s')}" if len(speeds) else ""
-    return f'The drop is that of the case "{comparison.name}"{arrives}.'
+    phrase = f'The drop is that of the case "{comparison.name}"'
+    if len(speeds):
+        phrase += f", which arrives at {text(float(speeds[0]), 'm/s')}"
+    return f"{phrase}."
 
 
 def first_impacts(comparison: Comparison) -> Table:
@@ -147,11 +150,13 @@ def comparison_warnings(comparison: Comparison) -> list[str]:
     for name, result in comparison.results.items():
         for warning in result.doubts:
             laws.setdefault(warning, []).append(name)
-    every = len(comparison.results)
-    return [
-        f"{'every law' if len(names) == every > 1 else ', '.join(names)}: {warning}"
-        for warning, names in laws.items()
-    ]
+    warnings = []
+    for warning, names in laws.items():
+        concerned = ", ".join(names)
+        if len(names) == len(comparison.results) > 1:
+            concerned = "every law"
+        warnings.append(f"{concerned}: {warning}")
+    return warnings
 
 
 def free_parameter_of(law: ContactLaw) -> str:
