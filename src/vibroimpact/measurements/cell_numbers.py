@@ -67,7 +67,9 @@ def number_in(text: str, delimiter: str | None) -> float:
     try:
         if "_" in text:  # allowed in numbers by Python
             raise ValueError(text)
-        return float(text) if delimiter == "," or "," not in text else float(text.replace(",", "."))
+        if delimiter != ",":  # a comma is the decimal point
+            return float(text.replace(",", "."))
+        return float(text)
     except ValueError:
         plain = text.strip()
     if (lower := plain.lower()) in _MISSING:

@@ -134,7 +134,9 @@ def with_unit(cell: str, unit: str) -> str:
     unit = unit.strip()
     if not unit:
         return name
-    return f"{name} {unit}" if unit[0] in "[(" else f"{name} [{unit}]"
+    if unit[0] in "[(":
+        return f"{name} {unit}"
+    return f"{name} [{unit}]"
 
 
 def _plain(name: str) -> str:

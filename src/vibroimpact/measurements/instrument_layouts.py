@@ -53,7 +53,9 @@ def rows_of_instrument(head: Head, rows: Iterator[tuple[int, str]]) -> Iterator[
     InputError
         If a further segment begins.
     """
-    return _one_segment(rows) if _is_labview(head) else rows
+    if _is_labview(head):
+        return _one_segment(rows)
+    return rows
 
 
 def _is_labview(head: Head) -> bool:
@@ -136,7 +138,9 @@ class _LabviewSegment(NamedTuple):
     def field(self, key: str, column: int) -> tuple[int, str]:
         """Return the number of a line and its field for a column of the rows; "" if it has none."""
         number, fields = self.lines.get(key, (0, []))
-        return number, fields[column - 1].strip() if column <= len(fields) else ""
+        if column > len(fields):
+            return number, ""
+        return number, fields[column - 1].strip()
 
 
 def _labview_segment(head: Head) -> _LabviewSegment:
@@ -162,8 +166,12 @@ def _labview_segment(head: Head) -> _LabviewSegment:
             stated[key] = values[0].strip()
     separator = stated.get("Separator", "Tab").strip(",;\t ").lower()
     delimiter = _SEPARATORS.get(separator, "\t")
-    # the header of the file comes first, that of the segment next
-    begin, end = (ends[0] + 1, ends[1]) if len(ends) > 1 else (0, ends[0])
+    # the header of the file comes first, that of the segment next, if there are two
+    begin = 0
+    end = ends[0]
+    if len(ends) > 1:
+        begin = ends[0] + 1
+        end = ends[1]
     names_index = next((index for index in range(end + 1, len(lines)) if lines[index][1]), None)
     if names_index is None:
         raise InputError(

@@ -158,8 +158,9 @@ def _listed(functions: list[Function]) -> str:
         f'{function.number} "{function.identification[:40]}"'
         for function in functions[:_MOST_NAMED]
     )
-    more = f" and {len(functions) - _MOST_NAMED} more" if len(functions) > _MOST_NAMED else ""
-    return f"there are {listed}{more}"
+    if len(functions) > _MOST_NAMED:
+        listed += f" and {len(functions) - _MOST_NAMED} more"
+    return f"there are {listed}"
 
 
 def _factor_to_si(path: str | Path, function: Function, unit: str, file: UniversalFile) -> float:
@@ -169,7 +170,9 @@ def _factor_to_si(path: str | Path, function: Function, unit: str, file: Univers
     """
     named = f'{path}: "{function.identification}"'
     by_label = _factor_of_label(function.unit, unit)
-    by_file = None if file.factors is None else 1.0 / file.factors[_DIMENSIONS[unit]]
+    by_file = None
+    if file.factors is not None:  # from SI
+        by_file = 1.0 / file.factors[_DIMENSIONS[unit]]
     if by_label is None and by_file is None:
         label = "it has no unit"
         if function.unit:

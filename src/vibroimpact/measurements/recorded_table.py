@@ -206,8 +206,9 @@ def filled_in(channel: RecordedChannel) -> tuple[Floats, Floats, str]:
     linear = np.interp(time, channel.time, channel.value)
     span = float(np.ptp(channel.value)) or 1.0
     error = 100.0 * float(np.abs(value - linear).max()) / span
+    are = "is" if count == 1 else "are"
     sentence = (
-        f"{count} of its samples {'is' if count == 1 else 'are'} missing, the first in line "
+        f"{count} of its samples {are} missing, the first in line "
         f"{channel.missing[0]}: filled in by cubic splines, which adds an error, by estimate, of "
         f"up to {error:.2g} % of its range there"
     )
@@ -247,7 +248,11 @@ def _channel(
     layout = cells.layout
     cell = layout.header[column]
     value = cells.columns[column]
-    stated_times = None if time_column is None else cells.columns[time_column]
+    stated_times = None
+    times_from = ""
+    if time_column is not None:
+        stated_times = cells.columns[time_column]
+        times_from = f"column {quoted(layout.header[time_column])}: "
     time = _times(stated_times, layout.clocks.get(column), len(value))
     has_number = ~np.isnan(value)
     has_time = np.isfinite(time)
@@ -268,9 +273,6 @@ def _channel(
     in_range, doubts = _in_range(value[has_number], where)
     if column in layout.doubts:
         doubts = (layout.doubts[column], *doubts)
-    times_from = ""
-    if time_column is not None:
-        times_from = f"column {quoted(layout.header[time_column])}: "
     return RecordedChannel(
         name=name,
         cell=cell,

@@ -283,7 +283,7 @@ def _too_many(number: int, fields: int, layout: Layout) -> str:
     """Return the message that a line has more fields than the header."""
     columns = len(layout.header)
     if layout.is_stated:
-        known = f"{columns} {'is' if columns == 1 else 'are'} stated"
+        known = "1 is stated" if columns == 1 else f"{columns} are stated"
     else:
         known = f"the header has {columns}"
     hint = ""
@@ -370,18 +370,18 @@ def _number(
 ) -> float:
     """Return the number in a cell of a row, or what the callable makes of a cell that has none."""
     text = row[column] if column < len(row) else ""
+    where = f"line {line}, column {quoted(name)}"
     try:
         value = number_in(text, delimiter)
     except ValueError:
-        hint = f"; {_EITHER}" if is_either(text) else ""
-        raise InputError(
-            f"line {line}, column {quoted(name)}: {quoted(text.strip())} is not a number{hint}"
-        ) from None
+        fault = f"{quoted(text.strip())} is not a number"
+        if is_either(text):
+            fault += f"; {_EITHER}"
+        raise InputError(f"{where}: {fault}") from None
     if -_LARGEST_NUMBER < value < _LARGEST_NUMBER:
         return value
-    where = f"line {line}, column {quoted(name)}"
     if column >= len(row):
-        fields = f"{len(row)} field{'' if len(row) == 1 else 's'}"
+        fields = "1 field" if len(row) == 1 else f"{len(row)} fields"
         return without_number(nan, f"{where}: the cell is missing; the line has {fields}")
     coded = SCPI.get(value, value)
     if isnan(coded) or isinf(coded):
@@ -404,7 +404,8 @@ def _content_of(text: str, value: float, coded: float) -> str:
     try:
         float(text)
     except ValueError:
-        return f"{quoted(text)} is {'no number' if isnan(value) else 'over the range'}"
+        fault = "no number" if isnan(value) else "over the range"
+        return f"{quoted(text)} is {fault}"
     return f"{quoted(text)} is not finite"
 
 
@@ -420,9 +421,8 @@ def _refused(_: float, fault: str) -> float:
 
 def _allowed(units: Mapping[str, str]) -> str:
     """Return the names of known columns with their units."""
-    columns = [
-        f"{name} [{unit}]" if unit else name
-        for name, unit in units.items()
-        if "deviation" not in name
-    ]
+    columns = []
+    for name, unit in units.items():
+        if "deviation" not in name:
+            columns.append(f"{name} [{unit}]" if unit else name)
     return f"known are {', '.join(columns)}"

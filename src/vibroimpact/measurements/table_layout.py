@@ -6,6 +6,7 @@ It is found as people, instruments and languages write tables.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from itertools import chain, islice, pairwise
 from typing import NamedTuple
@@ -143,7 +144,9 @@ def table_layout(lines: Iterator[tuple[int, str]], columns: str | None = None) -
     >>> table_layout(iter([(1, "0,1\n"), (2, "1,2\n")]), "time=s,force=N")[:3]
     (1, ['time [s]', 'force [N]'], ',')
     """
-    stated = None if columns is None else stated_columns(columns)
+    stated = None
+    if columns is not None:
+        stated = stated_columns(columns)
     delimiter, comment, first = _beginning(lines)
     looked_at = ((number, content(line)) for number, line in islice(lines, _LOOKED))
     head = Head([first, *looked_at], delimiter)
@@ -200,13 +203,19 @@ def _stated(head: Head, stated: StatedColumns, instrument: HeaderLines | None) -
     cells = list(stated.cells)
     count = len(cells)
     named = [column for column, cell in enumerate(cells) if cell]
-    stated_are = f"{count} columns are stated" if count > 1 else "one column is stated"
-    first_row = 0 if instrument is None else instrument.below
+    stated_are = "one column is stated"
+    if count > 1:
+        stated_are = f"{count} columns are stated"
+    first_row = 0
+    known_delimiter = head.delimiter
+    if instrument is not None:
+        first_row = instrument.below
+        known_delimiter = instrument.delimiter
     nearest = ""
     for index, (number, line) in enumerate(head.lines):
         if not line or index < first_row:
             continue
-        delimiter = head.delimiter if instrument is None else instrument.delimiter
+        delimiter = known_delimiter
         if not delimiter and count > 1:
             delimiter = delimiter_of(line)
         fields = fields_of(line, delimiter)
@@ -381,11 +390,12 @@ def _with_groups(head: Head, at: int, cells: list[str], delimiter: str | None) -
     Several cells have one name then, and the line above names groups.
     """
     names = [name_and_unit(cell)[0] for cell in cells]
-    names_in_use = [name for name, cell in zip(names, cells, strict=True) if cell]
-    if at == 0 or len(set(names_in_use)) == len(names_in_use):
+    counts = Counter(name for name, cell in zip(names, cells, strict=True) if cell)
+    if at == 0 or not counts or max(counts.values()) == 1:
         return cells
-    groups = [cell.strip() for cell in fields_of(head.lines[at - 1][1], delimiter)]
-    if not 0 < len(list(filter(None, groups))) < len(cells) or len(groups) > len(cells):
+    _, line_above = head.lines[at - 1]
+    groups = [cell.strip() for cell in fields_of(line_above, delimiter)]
+    if not 0 < sum(map(bool, groups)) < len(cells) or len(groups) > len(cells):
         return cells
     groups += [""] * (len(cells) - len(groups))
     # the name of a group stands above its first column
@@ -393,8 +403,10 @@ def _with_groups(head: Head, at: int, cells: list[str], delimiter: str | None) -
     with_groups = []
     for name, cell, group_above in zip(names, cells, groups, strict=True):
         group = group_above or group
-        is_alone = names_in_use.count(name) == 1 or name == "time"
-        with_groups.append(cell if is_alone or not cell else f"{group} {cell}".strip())
+        is_distinct = counts[name] == 1 or name == "time"
+        if cell and not is_distinct:
+            cell = f"{group} {cell}".strip()
+        with_groups.append(cell)
     return with_groups
 
 

@@ -232,7 +232,9 @@ def _binary_end(raw: bytes, fields: list[bytes], offset: int) -> int:
     """Return the offset after the binary data of a dataset, by the fields of its first line."""
     for _ in range(_HEADER_LINES):
         _, offset = _line(raw, offset)
-    size = int(fields[4]) if len(fields) > 4 and fields[4].isdigit() else 0
+    size = 0
+    if len(fields) > 4 and fields[4].isdigit():
+        size = int(fields[4])
     return min(offset + size, len(raw))
 
 
@@ -297,7 +299,9 @@ def _function(
             uneven, values = _binary(raw, header, offset, form)
     else:
         uneven, values = _text(raw, offset, form)
-    variable = start + step * np.arange(form.length, dtype=float) if uneven is None else uneven
+    variable = uneven
+    if variable is None:
+        variable = start + step * np.arange(form.length, dtype=float)
     identification = "".join(letter for letter in lines[0] if letter.isprintable()).strip()
     if not (np.abs(variable) < _LARGEST).all():  # nor are they NaN
         raise ValueError
@@ -355,7 +359,9 @@ def _is_of_frequency(function_type: int, abscissa: int, ordinate: int, unit: str
 
 def _whole(text: str) -> int:
     """Return a number of a header; 0 where programs leave it out or write something else."""
-    return int(text) if text.strip().lstrip("+-").isdigit() else 0
+    if not text.strip().lstrip("+-").isdigit():
+        return 0
+    return int(text)
 
 
 def _unit_label(line: str) -> str:
@@ -366,11 +372,11 @@ def _unit_label(line: str) -> str:
 def _freedom(line: str, at: int) -> Freedom:
     """Return the degree of freedom whose fields begin at a column of the sixth line of a header."""
     entity = line[at + 1 : at + 11].strip()
-    return Freedom(
-        "" if entity == "NONE" else entity,
-        _whole(line[at + 11 : at + 21]),
-        _whole(line[at + 21 : at + 25]),
-    )
+    if entity == "NONE":
+        entity = ""
+    node = _whole(line[at + 11 : at + 21])
+    direction = _whole(line[at + 21 : at + 25])
+    return Freedom(entity, node, direction)
 
 
 def _binary(
@@ -379,19 +385,21 @@ def _binary(
     """Return the variables, None if they are even, and the values of a binary function."""
     byte_order, floating_format, _, size = (int(field) for field in header.split()[1:5])
     order = _ENDS[byte_order]
-    precision = "f4" if form.is_single else "f8"
     if floating_format != _IEEE or offset + size > len(raw):
         raise ValueError
+    single = np.dtype(f"{order}f4")
+    double = np.dtype(f"{order}f8")
+    ordinate = single if form.is_single else double
     if form.even:
-        numbers = np.frombuffer(raw, f"{order}{precision}", form.parts * form.length, offset)
+        numbers = np.frombuffer(raw, ordinate, form.parts * form.length, offset)
         return None, _joined(numbers.astype(float), form.parts)
     # with double-precision values, times occur in single and in double precision, and the stated
     # size may omit them: the mark of the end lies behind them if they are double
-    number_size = int(precision[1])
-    end_if_double = offset + (8 + form.parts * number_size) * form.length
+    row_if_double = double.itemsize + form.parts * ordinate.itemsize
+    end_if_double = offset + row_if_double * form.length
     is_double = raw[end_if_double : end_if_double + 12].lstrip().startswith(_MARK)
-    variable = f"{order}{'f8' if is_double else 'f4'}"
-    row = [("x", variable), ("y", f"{order}{precision}", (form.parts,))]
+    abscissa = double if is_double else single
+    row = np.dtype([("x", abscissa), ("y", ordinate, (form.parts,))])
     rows = np.frombuffer(raw, row, form.length, offset)
     return rows["x"].astype(float), _joined(rows["y"].astype(float).ravel(), form.parts)
 
@@ -425,4 +433,6 @@ def _text(raw: bytes, offset: int, form: _OrdinateForm) -> tuple[Floats | None, 
 
 def _joined(numbers: Floats, parts: int) -> Floats | Complex:
     """Return numbers, or the complex values of which they are real and imaginary parts in turn."""
-    return numbers if parts == 1 else numbers[::2] + 1j * numbers[1::2]
+    if parts == 1:
+        return numbers
+    return numbers[::2] + 1j * numbers[1::2]
