@@ -56,7 +56,9 @@ def atomic_file(target: Path) -> Iterator[Path]:
     OSError
         If it can't be written.
     """
-    file = target.resolve() if target.is_symlink() else target
+    file = target
+    if target.is_symlink():  # the link stays, and what it points to is replaced
+        file = target.resolve()
     with new_working_path(partial(working_path, file, NEW), _make_empty_file, target) as working:
         yield working
         os.replace(working, file)

@@ -113,7 +113,9 @@ def recorded_digest(path: Path) -> str | None:
     except DamageError as error:
         remedy = f"delete it, and {path.name} is read without a comparison of its check sum"
         raise with_path(summary, InputError(f"{error}; {remedy}")) from None
-    expected = recorded.get(path.name) if isinstance(recorded, dict) else None
+    if not isinstance(recorded, dict):
+        return None
+    expected = recorded.get(path.name)
     return expected if isinstance(expected, str) else None
 
 
@@ -123,4 +125,6 @@ CHANGED = "the file is damaged, or was changed after it was written (its check s
 
 def _plain(value: Any) -> Any:
     """Return a value that JSON can't represent as one that it can."""
-    return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else str(value)
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    return str(value)

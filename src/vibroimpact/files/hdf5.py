@@ -213,7 +213,9 @@ def attribute(owner: h5py.Dataset | h5py.Group, name: str, otherwise: Any = None
         raise DamageError(f"the attribute {name} is damaged ({short_reason(error)})") from None
     if isinstance(value, (np.ndarray, np.generic)):
         value = value.tolist()
-    return value.decode("utf-8", "replace") if isinstance(value, bytes) else value
+    if isinstance(value, bytes):
+        return value.decode("utf-8", "replace")
+    return value
 
 
 def short_reason(error: Exception) -> str:
@@ -221,4 +223,6 @@ def short_reason(error: Exception) -> str:
     text = " ".join(str(error).split())
     if any(sign in text for sign in _FAILED_CHECKS):
         return "its check sum does not match"
-    return text if len(text) < 120 else f"{text[:117]}..."
+    if len(text) < 120:
+        return text
+    return f"{text[:117]}..."

@@ -83,7 +83,9 @@ def identifier(
     plain = re.sub(f"[^{allowed}]+", between, name, flags=re.ASCII).strip("_-") or otherwise
     if len(plain) > longest:  # at the end of a word if possible
         plain = plain[:longest].rpartition(between)[0].rstrip("_-") or plain[:longest]
-    return f"{otherwise}{between}{plain}" if plain.lower() in _DEVICES else plain
+    if plain.lower() in _DEVICES:
+        return f"{otherwise}{between}{plain}"
+    return plain
 
 
 def plain_words(name: str) -> str:
@@ -113,4 +115,6 @@ def one_line(name: str) -> str:
     'a hard rock, dropped'
     """
     text = "".join(letter for letter in " ".join(name.split()) if letter.isprintable())
-    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
+    if len(text) <= _LONGEST:
+        return text
+    return f"{text[: _LONGEST - 3]}..."

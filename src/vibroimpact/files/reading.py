@@ -146,12 +146,8 @@ def text_lines(
     with opened(path, kind) as file:
         buffered = BufferedReader(file, _BLOCK)
         encoding = "utf-16" if buffered.peek(2).startswith(_UTF16) else "utf-8-sig"
-        text = TextIOWrapper(
-            buffered,
-            encoding=encoding,
-            errors="strict" if doubts is None else _OR_LATIN_1,
-            newline=None,
-        )
+        errors = "strict" if doubts is None else _OR_LATIN_1
+        text = TextIOWrapper(buffered, encoding=encoding, errors=errors, newline=None)
         remaining = kind.largest
         number = 0
         try:

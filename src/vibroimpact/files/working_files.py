@@ -224,8 +224,9 @@ def _lock(descriptor: int, *, shared: bool) -> bool | None:
 
     None if the file system does not support the lock.
     """
+    kind = fcntl.LOCK_SH if shared else fcntl.LOCK_EX
     try:
-        fcntl.flock(descriptor, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+        fcntl.flock(descriptor, kind | fcntl.LOCK_NB)
     except BlockingIOError:
         return False
     except OSError:  # such as folders on NFS
