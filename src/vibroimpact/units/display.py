@@ -339,7 +339,9 @@ def brief(value: float, unit: str) -> str:
     """
     best = multiple(unit, value)
     shown = f"{value / best.size:.4g}"
-    number = digits(value / best.size) if "e" in shown else shown.replace("-", _MINUS)
+    number = shown.replace("-", _MINUS)
+    if "e" in shown:
+        number = digits(value / best.size)
     return f"{number}\u00a0{best.unit}".rstrip("\u00a0")
 
 

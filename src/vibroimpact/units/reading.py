@@ -288,7 +288,9 @@ def unit_text(powers: Iterable[tuple[str, float]]) -> str:
 
 
 def _power(name: str, exponent: float) -> str:
-    return name if exponent == 1.0 else f"{name}^{exponent:g}"
+    if exponent == 1.0:
+        return name
+    return f"{name}^{exponent:g}"
 
 
 def _dimension_words(unit: pint.Unit) -> str:

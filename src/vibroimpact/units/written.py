@@ -125,8 +125,9 @@ string such as "25 mm")
         return Written(number, deviation, value.strip())
     number = to_si(value, unit)
     deviation = _ROUNDING * _last_digit(value, number)
-    text = value.strip() if isinstance(value, str) else f"{value:.15g} {unit}".rstrip()
-    return Written(number, deviation, text, stated=False)
+    if isinstance(value, str):
+        return Written(number, deviation, value.strip(), stated=False)
+    return Written(number, deviation, f"{value:.15g} {unit}".rstrip(), stated=False)
 
 
 def _number_and_deviation(text: str) -> tuple[str, str]:
@@ -158,13 +159,17 @@ def _last_digit(value: float | str, number: float) -> float:
 
     The value is `number` in SI.
     """
-    text = value if isinstance(value, str) else f"{float(value)!r}".removesuffix(".0")
+    text = value
+    if not isinstance(text, str):
+        text = repr(float(text)).removesuffix(".0")
     digits = _DIGITS.match(text)
     if digits is None:
         return 0.0
     decimals = len(digits[1].partition(".")[2])
     unit_of_last_digit = 10.0 ** (int(digits[2] or 0) - decimals)
-    quantity = number_and_unit(value) if isinstance(value, str) else None
+    quantity = None
+    if isinstance(value, str):
+        quantity = number_and_unit(value)
     if quantity is None or quantity[0] == 0.0:
         return unit_of_last_digit
     return unit_of_last_digit * abs(number / quantity[0])
