@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Container
+from collections.abc import Container, Iterable, Iterator
 from dataclasses import fields
 
 from rich.console import Group, RenderableType
@@ -16,6 +16,7 @@ from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of, first_restitution
 from vibroimpact.cases.fields.fluid import fluid_words
 from vibroimpact.cases.fields.sensor import SensorSection
+from vibroimpact.cases.limits.conditions import DropSummary
 from vibroimpact.cases.rigid.oblique import friction_law_of, is_oblique
 from vibroimpact.cases.rigid.pair import ball_of, contact_pair, is_free_sphere, sphere_density
 from vibroimpact.cases.rigid.plate_motion import motion_length
@@ -47,13 +48,17 @@ def _plate_text(case: Case) -> str:
     """Return a description of the plate, or of the sphere in its place."""
     plate = case.plate
     if plate.radius is not None:
-        return (
-            f"in its place a sphere, radius {plate.radius:g} m, "
-            f"{'free' if plate.supports == 'free' else 'rigid, held fixed'}"
-        )
-    size = f", {' x '.join(f'{side:g}' for side in plate.size)} m" if plate.size else ""
-    held = "held fixed" if plate.motion is None else "moved with its supports"
-    return f"{f'rigid, {held}' if plate.model == 'rigid' else 'elastic'}{size}"
+        held = "free" if plate.supports == "free" else "rigid, held fixed"
+        return f"in its place a sphere, radius {plate.radius:g} m, {held}"
+    if plate.model != "rigid":
+        description = "elastic"
+    elif plate.motion is None:
+        description = "rigid, held fixed"
+    else:
+        description = "rigid, moved with its supports"
+    if plate.size:
+        description += f", {' x '.join(f'{side:g}' for side in plate.size)} m"
+    return description
 
 
 def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
@@ -66,110 +71,142 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     aside : container of str
         Keys of the case whose implausible values are reported elsewhere, and not doubted here.
     """
-    laws = contact_laws_of(case)
-    pair = contact_pair(case)
-    speed = touch_speed(case)
-    mass = mass_of_sphere(case)
-    radius = case.sphere.radius
-    gravity = case.drop.gravity
-    rows: list[tuple[str, str]] = [
+    law = contact_laws_of(case)[0]
+    expected = expected_of(case)
+    rows = [
+        *_body_rows(case),
+        *_drop_rows(case),
+        ("contact law", f"{case.contact.law}: {law.equation}"),
+        *_parameter_rows(case),
+        *_liquid_rows(case),
+        *_friction_rows(case),
+        ("stops", " or ".join(_ends_of_a_run(case))),
+        ("tolerance", f"{case.run.tolerance:g}"),
+        *_calibration_rows(case),
+    ]
+    if isinstance(law, CompliantLaw) and law.lasting:
+        rows.append(("each impact", _where_impacts_lie(case)))
+    rows += _expected_rows(case, expected)
+    rows += _labelled("cost", describe_costs(case))
+    warnings = doubts(resolved_case(case), expected, aside)
+    return Group(Text(case.name or "a drop", style="bold"), facts(rows), *warning_lines(warnings))
+
+
+def _labelled(label: str, lines: Iterable[str]) -> list[tuple[str, str]]:
+    """Return rows of which the first has a label."""
+    return [("" if number else label, line) for number, line in enumerate(lines)]
+
+
+def _body_rows(case: Case) -> list[tuple[str, str]]:
+    sphere = case.sphere
+    return [
         (
             "sphere",
-            f"radius {radius:g} m, mass {mass:.6g} kg, {case.sphere.model}, of "
-            f"{_material_text(case.sphere.material)}",
+            f"radius {sphere.radius:g} m, mass {mass_of_sphere(case):.6g} kg, {sphere.model}, of "
+            f"{_material_text(sphere.material)}",
         ),
         *_ball_rows(case),
         ("plate", f"{_plate_text(case)}, of {_material_text(case.plate.material)}"),
         *_motion_rows(case),
         *_elastic_rows(case),
         *_coupling_rows(case),
-        ("effective modulus", f"{pair.effective_modulus:.6g} Pa"),
-        (
-            "first approach speed",
-            f"{speed:.6g} m/s{' along the normal' if is_oblique(case) else ''}, gravity "
-            f"{gravity:g} m/s2",
-        ),
-        *(
-            []
-            if case.drop.air is None
-            else [("air", fluid_words(case.drop.air.model_dump(exclude_none=True)))]
-        ),
-        ("contact law", f"{case.contact.law}: {laws[0].equation}"),
+        ("effective modulus", f"{contact_pair(case).effective_modulus:.6g} Pa"),
     ]
+
+
+def _drop_rows(case: Case) -> list[tuple[str, str]]:
+    speed = f"{touch_speed(case):.6g} m/s"
+    if is_oblique(case):
+        speed += " along the normal"
+    rows = [("first approach speed", f"{speed}, gravity {case.drop.gravity:g} m/s2")]
+    if case.drop.air is not None:
+        rows.append(("air", fluid_words(case.drop.air.model_dump(exclude_none=True))))
+    return rows
+
+
+def _parameter_rows(case: Case) -> Iterator[tuple[str, str]]:
+    """Yield a row for each parameter of the contact law.
+
+    A list in the case gives one law per impact: parameters that differ are shown for each.
+    """
+    laws = contact_laws_of(case)
     functions = by_speed_of(case)
-    # a list in the case gives one law per impact: parameters that differ are shown for each
     for item in fields(laws[0]):
         values = [getattr(law, item.name) for law in laws]
         if values[0] is None or (item.metadata["memory"] and not any(values)):
             continue
         if item.name in functions:
-            rows.append(
-                (
-                    f"  {item.name}",
-                    f"{unit_of(item, 1)}: {functions[item.name].words}".removeprefix(": "),
-                )
-            )
-            continue
-        shown = "-"
-        if len(set(values)) > 1:
-            shown = ", ".join(f"{value:.9g}" for value in values)
-        elif values[0] is not None:
-            shown = f"{values[0]:.9g}"
-        rows.append((f"  {item.name}", f"{shown} {unit_of(item, getattr(laws[0], 'exponent', 1))}"))
-    if (table := case.contact.local.liquid) is not None:
-        stokes = table.liquid().stokes_number(
-            speed, case.sphere.radius, sphere_density(case.sphere)
-        )
-        damping = (
-            f"at the first touch the Stokes number is {stokes:.4g}, and "
-            f"{restitution_kept(stokes):.5g} of the restitution remains"
-        )
-        rows.append(("liquid", f"{fluid_words(table.model_dump())}: {damping}"))
-    if (friction := friction_law_of(case)) is not None:
-        rows.append(("friction law", f"{friction.name}: {friction.equation}"))
-        rows += [
-            (
-                f"  {item.name}",
-                f"{getattr(friction, item.name):.9g} {item.metadata['unit']}".rstrip(),
-            )
-            for item in fields(friction)
-        ]
-    rows += [("stops", " or ".join(_ends_of_a_run(case))), ("tolerance", f"{case.run.tolerance:g}")]
-    if case.calibrate is not None:
-        named = case.calibrate.parameter
-        tuned = (
-            ", ".join(named) if isinstance(named, tuple) else named or "loss parameter of the law"
-        )
-        rows.append(("to calibrate", f"{tuned}; a run ignores [calibrate]"))
-    if isinstance(laws[0], CompliantLaw) and laws[0].lasting:
-        if case.drop.same_spot:
-            where = "on the same spot: the dents of earlier ones remain"
+            phrase = f"{unit_of(item, 1)}: {functions[item.name].words}".removeprefix(": ")
         else:
-            where = "on fresh surfaces"
-        rows.append(
-            ("each impact", f"{where} (drop.same_spot = {str(case.drop.same_spot).lower()})")
-        )
-    # restitution and expected contact are those of rigid bodies, and labelled so where the bodies
-    # deform
-    rigid = not deforms(case) or is_free_sphere(case)
-    label = "restitution" if rigid else "restitution if rigid"
-    rows += [
-        ("" if number else label, line) for number, line in enumerate(_restitution_lines(case))
-    ]
-    expected = expected_of(case)
+            if len(set(values)) == 1:
+                values = values[:1]
+            numbers = ", ".join(f"{value:.9g}" for value in values)
+            phrase = f"{numbers} {unit_of(item, getattr(laws[0], 'exponent', 1))}"
+        yield f"  {item.name}", phrase
+
+
+def _liquid_rows(case: Case) -> list[tuple[str, str]]:
+    table = case.contact.local.liquid
+    if table is None:
+        return []
+    density = sphere_density(case.sphere)
+    stokes = table.liquid().stokes_number(touch_speed(case), case.sphere.radius, density)
+    damping = (
+        f"at the first touch the Stokes number is {stokes:.4g}, and "
+        f"{restitution_kept(stokes):.5g} of the restitution remains"
+    )
+    return [("liquid", f"{fluid_words(table.model_dump())}: {damping}")]
+
+
+def _friction_rows(case: Case) -> list[tuple[str, str]]:
+    friction = friction_law_of(case)
+    if friction is None:
+        return []
+    rows = [("friction law", f"{friction.name}: {friction.equation}")]
+    for item in fields(friction):
+        quantity = f"{getattr(friction, item.name):.9g} {item.metadata['unit']}".rstrip()
+        rows.append((f"  {item.name}", quantity))
+    return rows
+
+
+def _calibration_rows(case: Case) -> list[tuple[str, str]]:
+    if case.calibrate is None:
+        return []
+    tuned = case.calibrate.parameter or "loss parameter of the law"
+    if isinstance(tuned, tuple):
+        tuned = ", ".join(tuned)
+    return [("to calibrate", f"{tuned}; a run ignores [calibrate]")]
+
+
+def _where_impacts_lie(case: Case) -> str:
+    """Return where each impact of a law lies that leaves dents."""
+    if case.drop.same_spot:
+        return "on the same spot: the dents of earlier ones remain (drop.same_spot = true)"
+    return "on fresh surfaces (drop.same_spot = false)"
+
+
+def _expected_rows(case: Case, expected: DropSummary) -> list[tuple[str, str]]:
+    """Return rows on restitution and expected contact.
+
+    They are those of rigid bodies, and labelled so where the bodies deform.
+    """
+    restitution = "restitution"
+    without_losses = "without losses"
+    if deforms(case) and not is_free_sphere(case):
+        restitution = "restitution if rigid"
+        without_losses = "without losses, rigid"
+    rows = _labelled(restitution, _restitution_lines(case))
     if not math.isnan(expected.force):
-        numbers = f"indentation {expected.depth:.4g} m, force {expected.force:.4g} N"
-        rows.append(("without losses" + ("" if rigid else ", rigid"), numbers))
-    rows += [("" if number else "cost", line) for number, line in enumerate(describe_costs(case))]
-    warnings = doubts(resolved_case(case), expected, aside)
-    return Group(Text(case.name or "a drop", style="bold"), facts(rows), *warning_lines(warnings))
+        contact = f"indentation {expected.depth:.4g} m, force {expected.force:.4g} N"
+        rows.append((without_losses, contact))
+    return rows
 
 
 def _ends_of_a_run(case: Case) -> list[str]:
     """Return what ends a run of a case, whichever comes first."""
     number = impact_limit(case)
     duration = run_duration(case)
-    ends = ["at rest"] if case.drop.gravity else ["when it flies off for good"]
+    ends = ["at rest" if case.drop.gravity else "when it flies off for good"]
     if number:
         ends.append("after 1 impact" if number == 1 else f"after {number} impacts")
     if duration:
@@ -194,15 +231,13 @@ def _ball_rows(case: Case) -> list[tuple[str, str]]:
         )
     if sphere.inertia is not None or (sphere.mass is not None and is_oblique(case)):
         problem = rigid_problem(case)
-        turns = (
+        inertia = (
             f"moment of inertia {problem.sphere_inertia:.4g} kg m2, "
             f"{problem.inertia_ratio:.4g} times mass and squared radius"
         )
-        lines.append(
-            turns
-            if ball.inertia is not None
-            else f'{turns}, as of a solid ball; of a shell: sphere.inertia = "hollow"'
-        )
+        if ball.inertia is None:
+            inertia += ', as of a solid ball; of a shell: sphere.inertia = "hollow"'
+        lines.append(inertia)
     return [("", line) for line in lines]
 
 
@@ -214,7 +249,9 @@ def _inside(ratio: float) -> str:
         return (
             ", so hollow or light inside; a stiffness from Hertz's theory is that of a solid ball"
         )
-    return ", so heavy inside" if ratio > 1.0 + _LIKE_SOLID else ""
+    if ratio > 1.0 + _LIKE_SOLID:
+        return ", so heavy inside"
+    return ""
 
 
 def _motion_rows(case: Case) -> list[tuple[str, str]]:
@@ -226,9 +263,8 @@ def _motion_rows(case: Case) -> list[tuple[str, str]]:
     if motion.file is not None:
         lasts = "repeated" if motion.repeat else f"for {motion_length(case):.6g} s"
         return [("motion of supports", f"as in {motion.file}, {lasts}, {along}")]
-    strength = (
-        float(motion.amplitude or 0.0) * (2.0 * math.pi * float(motion.frequency or 0.0)) ** 2
-    )
+    angular_frequency = 2.0 * math.pi * float(motion.frequency or 0.0)
+    strength = float(motion.amplitude or 0.0) * angular_frequency**2
     phrase = (
         f"amplitude {motion.amplitude:g} m, frequency {motion.frequency:g} Hz, phase "
         f"{motion.phase:g} rad, {along}"
@@ -269,7 +305,9 @@ def _coupling_rows(case: Case) -> list[tuple[str, str]]:
         phrase.append(
             f"local element found from a largest force of {local.measured.max_force:.6g} N {where}"
         )
-    rows = [("local compliance", "; ".join(phrase))] if phrase else []
+    rows = []
+    if phrase:
+        rows.append(("local compliance", "; ".join(phrase)))
     for sensor in case.sensors:
         if isinstance(sensor.position, str):
             place = sensor.position
