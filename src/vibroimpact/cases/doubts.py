@@ -66,7 +66,8 @@ def errors_of(case: ResolvedCase, summary: DropSummary) -> Mapping[str, float]:
     """Return the estimated relative errors of results of the first impact, by their names.
 
     They are the sums of what the limits of the theory change, also of those that are not exceeded;
-    what is not estimated is not in them.
+    of limits that are about the same thing the largest counts. What is not estimated is not in
+    them.
 
     Parameters
     ----------
@@ -79,8 +80,14 @@ def errors_of(case: ResolvedCase, summary: DropSummary) -> Mapping[str, float]:
     {'largest force': 0.03, 'contact time': 0.03}
     """
     drop = Conditions(case, summary)
-    errors: dict[str, float] = {}
+    by_group: dict[str, dict[str, float]] = {}
     for name, number in numbers_of(drop).items():
-        for result, change in limits()[name].effects(drop, float(number)).items():
-            errors[result] = errors.get(result, 0.0) + abs(change)
+        limit = limits()[name]
+        largest = by_group.setdefault(limit.group or name, {})
+        for result, change in limit.effects(drop, float(number)).items():
+            largest[result] = max(largest.get(result, 0.0), abs(change))
+    errors: dict[str, float] = {}
+    for changes in by_group.values():
+        for result, change in changes.items():
+            errors[result] = errors.get(result, 0.0) + change
     return errors

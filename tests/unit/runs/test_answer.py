@@ -74,6 +74,8 @@ def test_what_yield_means_is_what_the_plastic_law_computes() -> None:
     assert f"restitution of the contact about {restitution:.1g}" in warning
     assert warning.startswith("the plate (steel) yields, and so does the sphere (steel): ")
     assert effect_of(warning) == pytest.approx(2 * (1 - restitution))
+    # both bodies yield, and the contact is one
+    assert elastic.relative_errors["restitution"] == pytest.approx(1 - restitution)
 
 
 @pytest.mark.parametrize("remedy", ["contact.finite_sphere", "drop.air"])
