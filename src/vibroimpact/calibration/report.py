@@ -44,6 +44,7 @@ from vibroimpact.calibration.friction.friction_report import (
     given_values_sentences,
     together_words,
 )
+from vibroimpact.calibration.observed.observations import impact_label
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.files.check_sums import CHECK_SUMS, digests_of, sealed
 from vibroimpact.files.result_folder import CASE, write_case
@@ -101,8 +102,8 @@ def _law_report(calibration: Calibration) -> Report:
 def _law_quantities(calibration: Calibration) -> list[Quantity]:
     """Return the values to type: one for every impact, or one for each of the first ones."""
     values = calibration.values
-    notes = list(calibration.observations.labels)
     number = min(len(values), _MOST_VALUES)
+    notes = [impact_label(calibration.observations, impact) for impact in range(number)]
     if np.ptp(values) == 0.0:
         notes = ["for every impact"]
         number = 1
