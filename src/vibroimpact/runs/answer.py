@@ -6,28 +6,25 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from vibroimpact.cases.limits.limit import (
-    DURATION,
-    FORCE,
-    REBOUND,
-    RESTITUTION,
-    VIBRATION,
-)
+import numpy as np
+
+from vibroimpact.cases.limits.limit import DURATION, FORCE
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.report.report import Quantity
 from vibroimpact.results.result import Result
+from vibroimpact.runs.tables import ERRORS_OF_COLUMNS
 from vibroimpact.units.display import STANDARD_GRAVITY
 
 _MOST_SENSORS = 4
 """Sensors whose largest reading the answer states; the table below has all."""
 
 _OF_FIRST_IMPACT = (
-    ("duration_s", "Contact time", "s", DURATION),
-    ("restitution_achieved", "Restitution", "", RESTITUTION),
-    ("rebound_height_m", "Rebound height", "m", REBOUND),
-    ("energy_to_vibration_J", "Energy into vibration", "J", VIBRATION),
+    ("duration_s", "Contact time", "s"),
+    ("restitution_achieved", "Restitution", ""),
+    ("rebound_height_m", "Rebound height", "m"),
+    ("energy_to_vibration_J", "Energy into vibration", "J"),
 )
-"""Columns of the table of impacts with their names here, units, and names of their errors."""
+"""Columns of the table of impacts with their names here, and units."""
 
 
 def answer_of(result: Result) -> list[Quantity]:
@@ -57,16 +54,16 @@ def answer_of_impacts(result: Result) -> Iterator[Quantity]:
             note = f"in impact {int(impacts['max_force_N'].argmax()) + 1}"
         yield Quantity("Largest force", largest_force, "N", errors.get(FORCE, math.nan), note)
     # what modes left out change of the rebound is more than of the force, and not estimated
-    is_bound = any(error > 0.0 for error in result.truncation.values())
     least_error = max(result.truncation.values(), default=0.0)
-    for column, name, unit, error_name in _OF_FIRST_IMPACT:
+    for column, name, unit in _OF_FIRST_IMPACT:
         value = float(impacts[column][0]) if column in impacts else math.nan
         if not math.isfinite(value):
             continue
+        error_name = ERRORS_OF_COLUMNS[column]
         error = errors.get(error_name, math.nan)
-        is_least = is_bound and error_name not in (FORCE, DURATION)
+        is_least = least_error > 0.0 and error_name != DURATION
         if is_least:
-            error = max(least_error, error) if math.isfinite(error) else least_error
+            error = float(np.fmax(error, least_error))
         note = "of the first impact" if several else ""
         yield Quantity(name, value, unit, error, note, is_least)
 

@@ -73,7 +73,7 @@ _ROUGH = 0.1
 
 _CHANGE_OF_TWO_FIGURES = 0.03
 
-_ERRORS_OF_COLUMNS = {
+ERRORS_OF_COLUMNS = {
     "max_force_N": FORCE,
     "max_indentation_m": FORCE,
     "max_acceleration_m_s2": FORCE,
@@ -81,6 +81,7 @@ _ERRORS_OF_COLUMNS = {
     "restitution_achieved": RESTITUTION,
     "separation_speed_m_s": RESTITUTION,
     "rebound_height_m": REBOUND,
+    "energy_to_vibration_J": VIBRATION,
 }
 """The results of an impact whose error columns have."""
 
@@ -361,7 +362,7 @@ def changes_of(result: Result, name: str) -> Floats:
     It is that for an unavoidable perturbation of the drop. What is off by more than a tenth, by the
     estimated error of the first impact, has two figures.
     """
-    error = result.relative_errors.get(_ERRORS_OF_COLUMNS.get(name, ""), 0.0)
+    error = result.relative_errors.get(ERRORS_OF_COLUMNS.get(name, ""), 0.0)
     if error > _ROUGH:
         return np.fmax(result.change_by_impact, _CHANGE_OF_TWO_FIGURES)
     return result.change_by_impact
