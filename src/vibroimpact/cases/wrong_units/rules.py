@@ -107,24 +107,26 @@ def hardness(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRang
 
 def plate_thickness(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
     """Return the range of the thickness of a plate."""
-
-    def above(value: float) -> str:
-        if value > 5.0:
-            return "is very thick for a plate"
-        return f"is much more than the plate is long, {estimate.across:g} m"
-
-    return PlausibleRange(high=float(np.fmin(5.0, 4.0 * estimate.across)), above=above)
+    return _below(5.0, "is very thick for a plate", estimate, "is much more than")
 
 
 def sphere_radius(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
     """Return the range of the radius of a sphere."""
+    return _below(3.0, "is very large for a sphere", estimate, "is far more than")
+
+
+def _below(most: float, large: str, estimate: HertzEstimate, more: str) -> PlausibleRange:
+    """Return the range of a length up to a largest one [m], and to four times that of the plate.
+
+    `large` says what a length above the first is, `more` how it is beside the plate.
+    """
 
     def above(value: float) -> str:
-        if value > 3.0:
-            return "is very large for a sphere"
-        return f"is far more than the plate is long, {estimate.across:g} m"
+        if value > most:
+            return large
+        return f"{more} the plate is long, {estimate.across:g} m"
 
-    return PlausibleRange(high=float(np.fmin(3.0, 4.0 * estimate.across)), above=above)
+    return PlausibleRange(high=float(np.fmin(most, 4.0 * estimate.across)), above=above)
 
 
 def sphere_mass(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
