@@ -92,8 +92,7 @@ class Material:
     loss_factor: float | None = None
     compressive_strength: float | None = None
     tensile_strength: float | None = None
-    # by keyword only, which leaves the positions of the others
-    hardness: float | None = field(default=None, kw_only=True)
+    hardness: float | None = None
     name: str = ""
     description: str = ""
     note: str = ""
