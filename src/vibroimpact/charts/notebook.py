@@ -69,6 +69,7 @@ def plotly_figure(chart: Chart) -> go.Figure:
         "margin": {"t": above, "b": 60},
         "font": {"color": INK.light},
     }
+    # 60 px below the axes, where their labels end, in parts of the height that the axes have
     layout["legend"] = {"orientation": "h", "y": -60 / layout["height"], "yanchor": "top"}
     layout["height"] += above + 80
     traces = [
