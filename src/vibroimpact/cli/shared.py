@@ -144,7 +144,7 @@ def settings_of(
             raise InputError(f'--set "{text}": give KEY=VALUE, such as {example}')
         try:
             settings[key] = tomllib.loads(f"value = {value}")["value"]
-        except (ValueError, RecursionError):
+        except (ValueError, RecursionError):  # a text without quotes, such as 10 mm
             settings[key] = value
     return settings
 
