@@ -138,20 +138,15 @@ def _sphere(drop: Drop) -> Cells:
     around = np.linspace(0.0, 2.0 * np.pi, _AROUND, endpoint=False)
     down = np.linspace(0.0, np.pi, _DOWN + 1)
     ring = np.stack([np.cos(around), np.sin(around), np.zeros(_AROUND)], axis=1)
-    unit = np.sin(down)[:, None, None] * ring + np.cos(down)[:, None, None] * np.array(
-        [0.0, 0.0, 1.0]
-    )
+    pole = np.array([0.0, 0.0, 1.0])
+    unit = np.sin(down)[:, None, None] * ring + np.cos(down)[:, None, None] * pole
     points = np.array([*drop.position, 0.0]) + drop.radius * unit.reshape(-1, 3)
-    row, column = (
-        part.ravel() for part in np.meshgrid(np.arange(_DOWN), np.arange(_AROUND), indexing="ij")
-    )
+    # points are numbered ring by ring, and the last cell of a ring closes it
+    row, column = np.divmod(np.arange(_DOWN * _AROUND), _AROUND)
     right = (column + 1) % _AROUND
-    corners = [
-        row * _AROUND + column,
-        (row + 1) * _AROUND + column,
-        (row + 1) * _AROUND + right,
-        row * _AROUND + right,
-    ]
+    upper = row * _AROUND
+    lower = upper + _AROUND
+    corners = [upper + column, lower + column, lower + right, upper + right]
     return points.astype(np.float32), np.stack(corners, axis=1).astype(np.int32)
 
 
