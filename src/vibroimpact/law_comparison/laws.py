@@ -90,19 +90,16 @@ def cases_under(
 def _case_under(
     case: Case, law: type[ContactLaw], given: Mapping[str, Any], achieving: float | None
 ) -> Case:
-    known = {item.name: item for item in fields(law)}
-    own = {item.name: item for item in fields(find_contact_law(case.contact.law))}
-    contact: dict[str, Any] = {"law": law.name}
+    contact: dict[str, Any] = {"law": law.name, **_shared_parameters(case, law)}
     placeholders = []
-    for key, value in case.contact.parameters.items():
-        if law.name == case.contact.law or (key in known and _unit(known[key]) == _unit(own[key])):
-            contact[key] = in_table(value)
-    for key, item in known.items():
+    for item in fields(law):
+        key = item.name
         value = given.get(f"{law.name}.{key}", given.get(key))
         if value is not None:
             contact[key] = value
         elif achieving is not None and not _can_be_left_out(case, law, contact, item):
-            # placeholder, valid only for the parameter that is tuned
+            # placeholder, valid only for the parameter that is tuned: which one it is, only a
+            # complete law tells
             contact[key] = item.metadata["example"]
             placeholders.append(key)
     name = case.name or "a drop"
@@ -134,6 +131,19 @@ def _case_under(
         if "missing" in error.message or "needs" in error.message:
             message += " (give parameters with LAW.KEY=VALUE)"
         raise InputError(f"{law.name}: {message}") from None
+
+
+def _shared_parameters(case: Case, law: type[ContactLaw]) -> dict[str, Any]:
+    """Return the parameters of a case that mean the same in another law."""
+    if law.name == case.contact.law:
+        return {key: in_table(value) for key, value in case.contact.parameters.items()}
+    own_units = {item.name: _unit(item) for item in fields(find_contact_law(case.contact.law))}
+    units = {item.name: _unit(item) for item in fields(law)}
+    return {
+        key: in_table(value)
+        for key, value in case.contact.parameters.items()
+        if units.get(key) == own_units[key]
+    }
 
 
 def _can_be_left_out(
@@ -196,4 +206,5 @@ def _check_given(given: Mapping[str, Any], laws: Mapping[str, type[ContactLaw]])
 
 
 def _unit(item: Field[Any]) -> str:
+    # at one exponent, so that stiffnesses of laws with different exponents compare by their form
     return unit_of(item, 1.5)
