@@ -249,10 +249,11 @@ def _block(
             yield _row(block, headings), "bold"
     aligned = [_aligned(column) for column, _ in block]
     for number in range(len(block[0][0].cells)):
-        cells_of = [
-            _wrapped(cells[number], taken) if column.text else [cells[number]]
-            for cells, (column, taken) in zip(aligned, block, strict=True)
-        ]
+        cells_of = []
+        for cells, (column, taken) in zip(aligned, block, strict=True):
+            # numbers are not broken: their column is wide enough
+            lines = _wrapped(cells[number], taken) if column.text else [cells[number]]
+            cells_of.append(lines)
         style = "bold" if number in bold else ""
         for line_cells in zip_longest(*cells_of, fillvalue=""):
             yield _row(block, line_cells), style
@@ -271,7 +272,8 @@ def _row(block: list[tuple[TerminalColumn, int]], cells: Sequence[str]) -> str:
     filled = []
     for (column, taken), cell in zip(block, cells, strict=True):
         blanks = " " * (taken - cell_len(cell))
-        filled.append(cell + blanks if column.text else blanks + cell)
+        padded = cell + blanks if column.text else blanks + cell
+        filled.append(padded)
     return (" " * _BETWEEN).join(filled)
 
 
