@@ -244,10 +244,10 @@ def energy_table(result: Result) -> Table:
     """Return the final ledger as a table; that of the terminal has short names and no sum."""
     unit, ledger = ledger_table(result)
     entries = [row for row in ledger if row.name != SUM]
-    short_names = [
-        "put in" if row.name == PUT_IN else row.name.removesuffix("_J").replace("_", " ")
-        for row in entries
-    ]
+    short_names = []
+    for row in entries:
+        short_name = row.name.removesuffix("_J").replace("_", " ")
+        short_names.append("put in" if row.name == PUT_IN else short_name)
     short = table_of(
         ["entry", ("", unit), "%"],
         [[name, row.energy, row.part] for name, row in zip(short_names, entries, strict=True)],
