@@ -23,8 +23,9 @@ class ResolvedSphere(TypedDict, total=False):
     mass: Array
     inertia: Array
     model: str
-    modes: int
+    modes: int | str
     max_frequency: Array
+    accuracy: Array
     damping: Any
     mesh: Any
     reduction: str
@@ -39,8 +40,9 @@ class ResolvedPlate(TypedDict, total=False):
     size: Sequence[Array]
     model: str
     element: str
-    modes: int
+    modes: int | str
     max_frequency: Array
+    accuracy: Array
     damping: Any
     supports: Any
     inclination: Array

@@ -18,9 +18,10 @@ from vibroimpact.bodies.elastic import plate_recipe
 from vibroimpact.calibration.observed.section import CalibrateSection
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.doubts import doubts
-from vibroimpact.cases.expected import expected_of
+from vibroimpact.cases.elastic.chosen_modes import LEAST_MODES, MOST_MODES
 from vibroimpact.cases.fields import elastic_body, quantities, size_limits
 from vibroimpact.cases.limits.limit import limits
+from vibroimpact.cases.rigid.expected import expected_of
 from vibroimpact.cases.rigid.rigid_problem import touch_speed
 from vibroimpact.cli import main
 from vibroimpact.dynamics.statement.problem import MOST_IMPACTS
@@ -216,3 +217,18 @@ def test_doubts_about_units(
         main()
     (shown,) = (line for line in told if line.startswith(f"{key}: "))
     assert shown.removesuffix(".") in json.loads(capsys.readouterr().out)["doubts"]
+
+
+def test_how_many_modes_are_chosen() -> None:
+    of_sphere, of_plate = MOST_MODES["sphere"], MOST_MODES["plate"]
+    says(PAGE, "from {} to {} of a sphere and to {} of a plate", LEAST_MODES, of_sphere, of_plate)
+    says(PAGE, "chooses the modes; {} by default", elastic_body.DEFAULT_ACCURACY)
+    says(
+        "docs/elastic-drops.md",
+        "At least {} modes are taken, and at most {} of a sphere and {} of a plate",
+        LEAST_MODES,
+        of_sphere,
+        of_plate,
+    )
+    accuracy = 100.0 * elastic_body.DEFAULT_ACCURACY
+    says("docs/elastic-drops.md", "by less than `accuracy`, {} % by default", accuracy)

@@ -12,7 +12,6 @@ from stated_numbers import ROOT, says
 from support import blocks
 from vibroimpact.cases.limits.conditions import Conditions
 from vibroimpact.cases.limits.limit import numbers_of
-from vibroimpact.cases.validity.plate_mesh import plate_mesh_error
 from vibroimpact.runs.answer import answer_of
 from vibroimpact.units.display import STANDARD_GRAVITY
 
@@ -75,19 +74,11 @@ def test_the_run() -> None:
     says(PAGE, "Largest force {} kN ± {} %", 1e-3 * force.value, 100.0 * force.error)
     restitution = answer["Restitution"]
     says(PAGE, "Restitution {} ± {} % or more", restitution.value, 100.0 * restitution.error)
-    # in the three figures that its error leaves
-    reading = float(f"{answer['a1'].value:.3g}")
-    says(PAGE, "a1 {} m/s² ± {} %", reading, 100.0 * answer["a1"].error)
-    in_g = float(f"{answer['a1'].value / STANDARD_GRAVITY:.2g}")
-    says(PAGE, "{} g", in_g)
+    says(PAGE, "a1 {} m/s² ± {} %", answer["a1"].value, 100.0 * answer["a1"].error)
+    says(PAGE, "{} g", answer["a1"].value / STANDARD_GRAVITY)
+    says(PAGE, "here {}; fewer", float(len(result.frequencies("plate"))))
     says(PAGE, "the restitution achieved is {}.", first(response, "restitution_achieved"))
-    says(
-        PAGE,
-        "make the largest force about {} % too large",
-        100.0 * plate_mesh_error(response.problem.facts, response.impacts),
-    )
-    cracks, of_mesh = result.doubts
-    assert "about 0.57 % too large; give plate.mesh.element_size" in of_mesh
+    (cracks,) = result.doubts
     assert "the sphere (limestone) cracks" in cracks
 
 

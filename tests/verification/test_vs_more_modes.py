@@ -17,6 +17,7 @@ import pytest
 import vibroimpact as vi
 from agreement import Against, Agrees
 from support import plain_case
+from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.structures.modal_model import ModalBasis
 
 AGAINST = Against(
@@ -172,3 +173,51 @@ def test_finer_meshes_agree_better(agrees: Agrees) -> None:
         unit="N",
         relative=4e-3,
     )
+
+
+CHOSEN = {
+    "steel of 12 mm": {"size": [0.3, 0.2, 0.012]},
+    "steel of 20 mm": {"size": [0.3, 0.2, 0.02]},
+    "concrete of 20 mm": {"size": [0.3, 0.2, 0.02], "material": "concrete"},
+    "a clamped edge nearby": {"size": [0.15, 0.1, 0.012]},
+    "bricks": {"size": [0.3, 0.2, 0.025], "element": "solid", "supports": "simply-supported"},
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CHOSEN)
+def test_the_modes_that_are_chosen_give_the_accuracy(name: str) -> None:
+    """Force and acceleration of a steel ball, beside four times the modes on the same mesh."""
+    plate = {
+        "material": "steel",
+        "model": "elastic",
+        "supports": "clamped",
+        "damping": 0.01,
+        **CHOSEN[name],
+    }
+    table = {
+        "sphere": {"radius": 0.01, "material": "steel"},
+        "plate": plate,
+        "drop": {"height": 0.5},
+        "contact": {"law": "flores", "restitution": 0.8},
+        "run": {"impacts": 1, "duration": 0.34},
+        "sensors": [{"name": "a1", "position": [0.04, 0.02], "rate": 20e3}],
+    }
+    chosen = elastic_bodies(vi.case_of(table))["plate"].recipe
+    count = len(vi.compute_modes(vi.case_of(table))["plate"].basis.frequencies)
+    more = {**plate, "modes": 4 * count}
+    finer = elastic_bodies(vi.case_of({**table, "plate": more}))["plate"].recipe.shape
+    mesh = {"element_size": finer.element_size}
+    kept = {"modes": count}
+    if chosen.reduction.max_frequency is not None:
+        kept = {"max_frequency": chosen.reduction.max_frequency}
+
+    few, many = (
+        vi.result_of(vi.simulate(vi.case_of({**table, "plate": {**plate, **modes, "mesh": mesh}})))
+        for modes in (kept, {"modes": 4 * count})
+    )
+    force = few.impacts["max_force_N"][0] / many.impacts["max_force_N"][0] - 1.0
+    assert abs(force) < 0.01
+    truth = many.signals["a1"].value
+    error = np.linalg.norm(few.signals["a1"].value - truth) / np.linalg.norm(truth)
+    assert error < 0.01

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from vibroimpact.cases.case import Case
+from vibroimpact.cases.elastic.chosen_modes import chosen_for
 from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.modes.document import mesh_facts
 from vibroimpact.modes.tables import supports_text
@@ -26,6 +27,7 @@ def elastic_rows(case: Case) -> list[tuple[str, str]]:
             kept = f"{reduction.modes} modes"
         else:
             kept = f"modes up to {reduction.max_frequency:g} Hz"
+        kept += chosen_for(case, name)
         method: str = reduction.method
         if reduction.attachment:
             method += ", with an attachment mode"

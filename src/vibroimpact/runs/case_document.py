@@ -9,7 +9,7 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.costs import describe_costs
 from vibroimpact.cases.doubts import doubts
-from vibroimpact.cases.expected import expected_of, first_restitution
+from vibroimpact.cases.rigid.expected import expected_of, first_restitution
 from vibroimpact.cases.rigid.pair import contact_pair
 from vibroimpact.cases.rigid.rigid_problem import (
     contact_laws_of,

@@ -13,10 +13,10 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.costs import describe_costs
 from vibroimpact.cases.doubts import doubts
-from vibroimpact.cases.expected import expected_of, first_restitution
 from vibroimpact.cases.fields.fluid import fluid_words
 from vibroimpact.cases.fields.sensor import SensorSection
 from vibroimpact.cases.limits.conditions import DropSummary
+from vibroimpact.cases.rigid.expected import expected_of, first_restitution
 from vibroimpact.cases.rigid.oblique import friction_law_of, is_oblique
 from vibroimpact.cases.rigid.pair import ball_of, contact_pair, is_free_sphere, sphere_density
 from vibroimpact.cases.rigid.plate_motion import motion_length

@@ -77,9 +77,10 @@ def _modes_of_sphere(recipe: Recipe, radius: float, omega: float) -> float:
         / (16.0 * math.pi * (1.0 - speed_ratio))
     )
     surface = 4.0 * math.pi * radius**2
-    modes_per_volume = _modes_per_volume(recipe, omega)
     # the volume is the surface times a third of the radius
-    return max(0.0, surface * (radius / 3.0 * modes_per_volume + modes_per_area) - 6.0)
+    return max(
+        0.0, surface * (radius / 3.0 * modes_per_volume(recipe, omega) + modes_per_area) - 6.0
+    )
 
 
 def _modes_of_plate(recipe: Recipe, size: tuple[float, float, float], omega: float) -> float:
@@ -102,11 +103,14 @@ def _modes_of_plate(recipe: Recipe, size: tuple[float, float, float], omega: flo
     # of which k_P^2 = (1 - nu)/2 k_T^2, and edges times k/4 pi of bending
     squares = bending**2 + shear**2 * (1.0 + 0.5 * (1.0 - ratio))
     waves = area * squares + edge_sum * bending
-    return max(0.0, waves / (4.0 * math.pi) + area * thickness * _modes_per_volume(recipe, omega))
+    return max(0.0, waves / (4.0 * math.pi) + area * thickness * modes_per_volume(recipe, omega))
 
 
-def _modes_per_volume(recipe: Recipe, omega: float) -> float:
-    """Return Weyl's number of modes per volume below an angular frequency [1/m^3]."""
+def modes_per_volume(recipe: Recipe, omega: float) -> float:
+    """Return Weyl's number of modes per volume below an angular frequency [1/m^3].
+
+    It is proportional to the cube of the frequency.
+    """
     speed_ratio = _squared_speed_ratio(recipe)
     shear = _shear_wave_number(recipe, omega)
     return shear**3 * (2.0 + speed_ratio * math.sqrt(speed_ratio)) / (6.0 * math.pi**2)

@@ -352,7 +352,12 @@ def _parse(text: str, unit: str) -> float:
 
 
 def _plain_number(number: float, unit: str, text: str) -> float:
-    """Return a number that has no unit; of one with a unit the message says what to write."""
+    """Return a number that has no unit, or is in per cent.
+
+    Of one with another unit the message says what to write.
+    """
+    if unit == "%":
+        return number * _plain_factor(unit)
     if unit:
         digits = f"{_finite(number * _plain_factor(unit), text):.15g}"
         raise InputError(

@@ -25,7 +25,7 @@ from vibroimpact.bayes_error.falls import falls_of_sweep
 from vibroimpact.bodies.ball import HOLLOW, SOLID, ball_volume, mean_density
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.doubts import doubts
-from vibroimpact.cases.expected import expected_of
+from vibroimpact.cases.rigid.expected import expected_of
 from vibroimpact.cases.rigid.pair import ball_of, contact_pair, resized, sphere_density
 from vibroimpact.cases.sections.keys import with_values
 from vibroimpact.exporting.formats import adams_solver, exudyn, lammps, matlab, mujoco, yade

@@ -21,9 +21,9 @@ from support import plain_case
 from vibrating import STIFFNESS, drop_on, modes_of
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.doubts import doubts
-from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.limits.conditions import Conditions, DropSummary
 from vibroimpact.cases.limits.limit import limits, numbers_of
+from vibroimpact.cases.rigid.expected import expected_of
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.report.terminal_report import terminal_report
 from vibroimpact.results.result import result_of

@@ -178,7 +178,6 @@ FAULTS = [
         "contact.loaded_to: it is the state before the first impact, and can't be a "
         "function of the approach speed",
     ),
-    ({"contact__restitution": "80 %"}, "write 0.8"),
     ({"run__impacts": 2.5}, "run.impacts: 2.5 is not allowed"),
     ({"run__duration": "5 m"}, 'run.duration: "5 m" is a length'),
     ({"run__tolerance": 0.1}, "run.tolerance: 0.1 is not allowed"),

@@ -12,9 +12,9 @@ import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.cases.build import resolved_case
-from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.limits.conditions import Conditions
 from vibroimpact.cases.limits.limit import numbers_of
+from vibroimpact.cases.rigid.expected import expected_of
 from vibroimpact.cases.sections.keys import with_values
 from vibroimpact.dynamics.fluids.liquid import restitution_kept
 from vibroimpact.exporting.load_drop import load_drop as drop_in_folder

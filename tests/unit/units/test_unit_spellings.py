@@ -252,7 +252,6 @@ def test_what_is_still_refused(text: str, unit: str) -> None:
         ("1,234,567", "", "leave the commas out: 1234567", 1234567.0),
         ("5 mm/m", "", "write 0.005", 0.005),
         ("5 ppm", "", "write 5e-06", 5e-6),
-        ("30 %", "", "write 0.3", 0.3),
     ],
 )
 def test_a_remedy_is_accepted(text: str, unit: str, remedy: str, value: float) -> None:
@@ -261,6 +260,10 @@ def test_a_remedy_is_accepted(text: str, unit: str, remedy: str, value: float) -
     assert str(refused.value).endswith(remedy)
     written = remedy.partition('"')[2].rstrip('"') or float(remedy.split()[-1])
     assert vi.units.to_si(written, unit) == pytest.approx(value)
+
+
+def test_a_plain_number_may_be_in_per_cent() -> None:
+    assert vi.units.to_si("30 %", "") == pytest.approx(0.3)
 
 
 def test_a_list_of_numbers_is_no_number_with_commas() -> None:

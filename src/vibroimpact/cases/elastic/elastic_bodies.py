@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
 
 from vibroimpact.bodies.elastic import ElasticBody, plate_recipe, recipe_of, sphere_recipe
+from vibroimpact.cases.elastic.chosen_modes import with_chosen_modes
 from vibroimpact.cases.fields.damping import damping_of, damping_table
 from vibroimpact.cases.fields.elastic_body import (
     BroughtMeshTable,
     PlateMeshTable,
-    SphereMeshTable,
     reduction_of,
 )
 from vibroimpact.cases.fields.section import derived
@@ -21,7 +23,7 @@ from vibroimpact.dynamics.sensors.instruments.microphone import MicrophoneInCase
 from vibroimpact.errors import InputError
 from vibroimpact.structures.finite_elements.rectangle import rectangle_blocks
 from vibroimpact.structures.finite_elements.surface import Spot
-from vibroimpact.structures.recipe import ImportedMesh, Recipe, mesh_features
+from vibroimpact.structures.recipe import ImportedMesh, Recipe, Reduction, mesh_features
 from vibroimpact.structures.sound_paths import Listener
 from vibroimpact.structures.supports.support import Support
 
@@ -67,6 +69,8 @@ def elastic_table(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str
     table: dict[str, Any] = {"reduction": reduction.method, "damping": damping_table(damping)}
     if reduction.modes:
         table["modes"] = reduction.modes
+    else:
+        table["max_frequency"] = reduction.max_frequency
     if isinstance(shape, ImportedMesh):
         table["mesh"] = section.mesh.table()
     else:
@@ -87,14 +91,15 @@ def _sphere(case: CaseTable) -> ElasticBody:
     contact = None
     if isinstance(mesh, BroughtMeshTable):
         contact = mesh.contact
-    reduction = reduction_of("sphere", sphere, (contact, "lower"))
+    reduction = reduction_of(sphere, (contact, "lower"))
+    recipe_with: Callable[[Reduction], Recipe]
     if isinstance(mesh, BroughtMeshTable):
-        recipe = recipe_of(mesh.brought(contact, "lower"), sphere.material, reduction)
-    elif isinstance(mesh, SphereMeshTable):
-        options = mesh.model_dump(exclude_none=True)
-        recipe = sphere_recipe(sphere.radius, sphere.material, reduction, **options)
+        brought = mesh.brought(contact, "lower")
+        recipe_with = partial(recipe_of, brought, sphere.material)
     else:
-        recipe = sphere_recipe(sphere.radius, sphere.material, reduction)
+        options = mesh.model_dump(exclude_none=True) if mesh else {}
+        recipe_with = partial(sphere_recipe, sphere.radius, sphere.material, **options)
+    recipe = with_chosen_modes(case, "sphere", recipe_with, reduction, contact)
     damping = damping_of(sphere.damping, sphere.material.loss_factor)
     return ElasticBody(recipe, "lower", contact, damping)
 
@@ -147,10 +152,13 @@ def _plate_recipe(case: CaseTable, contact: Spot) -> Recipe:
     """Return the recipe of the modes of a plate."""
     plate = case.plate
     mesh = plate.mesh
-    reduction = reduction_of("plate", plate, (contact, "upper"))
+    reduction = reduction_of(plate, (contact, "upper"))
     supports = supports_of(plate.supports)
+    recipe_with: Callable[[Reduction], Recipe]
     if isinstance(mesh, BroughtMeshTable):
-        return recipe_of(mesh.brought(contact, "upper"), plate.material, reduction, supports)
+        brought = mesh.brought(contact, "upper")
+        recipe_with = partial(recipe_of, brought, plate.material, supports=supports)
+        return with_chosen_modes(case, "plate", recipe_with, reduction, contact)
     assert plate.size is not None  # validated by the section
     options: dict[str, Any] = {}
     if isinstance(mesh, PlateMeshTable):
@@ -158,7 +166,10 @@ def _plate_recipe(case: CaseTable, contact: Spot) -> Recipe:
             options = _mesh_options(plate.size, mesh.elements, mesh.layers, supports)
         options |= mesh.model_dump(exclude_none=True, exclude={"elements"})
     element = plate.element or "plate"
-    return plate_recipe(plate.size, plate.material, reduction, supports, element, **options)
+    recipe_with = partial(
+        plate_recipe, plate.size, plate.material, supports=supports, element=element, **options
+    )
+    return with_chosen_modes(case, "plate", recipe_with, reduction, contact)
 
 
 def _mesh_options(

@@ -37,7 +37,8 @@ if TYPE_CHECKING:
 
 MOST_MODES = 20_000
 _PARTS = "parts"  # kind of the entries of the store with the number of parts of a file
-DEFAULT_MODES = {"sphere": 20, "plate": 100}
+DEFAULT_ACCURACY = 0.01
+"""Accuracy of the largest force and of signals for which modes are chosen."""
 
 _Size = Annotated[float, Quantity("m", "largest side of an element", Range(above=0))]
 _Count = Annotated[int, Field(ge=1, strict=True)]
@@ -261,7 +262,32 @@ def _mesh_field(kind: type[Section]) -> Any:
 SphereMeshField = _mesh_field(SphereMeshTable)
 PlateMeshField = _mesh_field(PlateMeshTable)
 
-ModesField = Annotated[int, Field(ge=1, le=MOST_MODES, strict=True)]
+
+def _read_modes(value: Any) -> Any:
+    """Return a valid number of modes, "auto" or None."""
+    if value is None or value == "auto" or (type(value) is int and 1 <= value <= MOST_MODES):
+        return value
+    raise InputError(
+        f"{quoted(value)} is not allowed; it must be a whole number from 1 to {MOST_MODES}, or "
+        '"auto" for as many as the accuracy needs'
+    )
+
+
+ModesField = Annotated[
+    Annotated[int, Field(ge=1, le=MOST_MODES)] | Literal["auto"] | None,
+    BeforeValidator(_read_modes),
+    Field(
+        description='number of modes, from the lowest; "auto" (default): enough for the accuracy'
+    ),
+]
+AccuracyField = Annotated[
+    float,
+    Quantity(
+        "",
+        "accuracy of the largest force and of the signals of sensors for which modes are chosen",
+        Range(above=0, at_most=0.5),
+    ),
+]
 FrequencyField = Annotated[float, Quantity("Hz", "all modes up to this frequency", Range(above=0))]
 ReductionField = Annotated[
     Literal["modal", "craig-bampton"] | None,
@@ -277,6 +303,7 @@ _ROUNDED = 1e-3
 ELASTIC_KEYS = (
     "modes",
     "max_frequency",
+    "accuracy",
     "damping",
     "supports",
     "mesh",
@@ -316,6 +343,12 @@ def check_elastic(section: Any) -> None:
             )
         return
     check_alternatives(section, "modes", "max_frequency", needed=False, key="modes")
+    states_modes = section.modes not in (None, "auto") or section.max_frequency is not None
+    if section.accuracy is not None and states_modes:
+        raise InputError(
+            'the modes are stated, and accuracy is for modes = "auto"; leave out one of them',
+            "accuracy",
+        )
     if section.reduction == "craig-bampton" and section.attachment_mode:
         raise InputError(
             "the constraint modes of craig-bampton contain it already; leave it out",
@@ -450,15 +483,15 @@ def check_sphere_below(case: Any) -> None:
             raise InputError("two spheres are rigid but for their contact; leave this out", key)
 
 
-def reduction_of(body: Literal["sphere", "plate"], section: Any, place: Place) -> Reduction:
-    """Return the modal reduction of a body with its contact point at `place`."""
+def reduction_of(section: Any, place: Place) -> Reduction:
+    """Return the modal reduction of a body with its contact point at `place`.
+
+    It has neither a number of modes nor a highest frequency where they are to be chosen.
+    """
     from vibroimpact.structures.recipe import Reduction
 
-    modes = section.modes
-    if modes is None and section.max_frequency is None:
-        modes = DEFAULT_MODES[body]
     return Reduction(
-        modes=modes,
+        modes=None if section.modes == "auto" else section.modes,
         max_frequency=section.max_frequency,
         method=section.reduction or "modal",
         interface=(place,) if section.reduction == "craig-bampton" else (),

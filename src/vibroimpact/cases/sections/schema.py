@@ -15,6 +15,7 @@ from vibroimpact.cases.fields.air import AirField
 from vibroimpact.cases.fields.contact import ContactSection, read_contact
 from vibroimpact.cases.fields.damping import DampingField
 from vibroimpact.cases.fields.elastic_body import (
+    AccuracyField,
     AttachmentField,
     BroughtMeshTable,
     FrequencyField,
@@ -74,8 +75,9 @@ class SphereSection(Section):
     model: Literal["rigid", "elastic"] = Field(
         "rigid", description="rigid, or elastic with vibration modes"
     )
-    modes: ModesField | None = Field(None, description="number of modes, from the lowest")
+    modes: ModesField = None
     max_frequency: FrequencyField | None = None
+    accuracy: AccuracyField | None = None
     damping: DampingField = None
     mesh: SphereMeshField = None
     reduction: ReductionField = None
@@ -123,8 +125,9 @@ class PlateSection(Section):
         None,
         description="type of the finite elements of an elastic plate; plate elements by default",
     )
-    modes: ModesField | None = Field(None, description="number of modes, from the lowest")
+    modes: ModesField = None
     max_frequency: FrequencyField | None = None
+    accuracy: AccuracyField | None = None
     damping: DampingField = None
     supports: SupportsField = None
     inclination: (

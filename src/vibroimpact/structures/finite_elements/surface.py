@@ -254,6 +254,35 @@ def surface_motion(
     return _rows(mesh, nodes, weights, offset), positions
 
 
+def thickness_at(mesh: Mesh, place: tuple[float, float], side: Side) -> float:
+    """Return the thickness of a body of solid elements at a place of a side [m].
+
+    It is that of the wall below its outermost face: the distance to the next face across it.
+
+    Raises
+    ------
+    InputError
+        If the place is not on the body.
+
+    Examples
+    --------
+    >>> from vibroimpact.structures.finite_elements.lattice import box_mesh
+    >>> round(thickness_at(box_mesh((1.0, 1.0, 0.1), (3, 3, 1)), (0.2, 0.1), "upper"), 9)
+    0.1
+    """
+    places = np.array([place])
+    touched = surface_motion(mesh, places, side)[1][0, 2]
+    other_side: Side = "lower" if side == "upper" else "upper"
+    distances = []
+    for faces in facing(_near_column(mesh, places), other_side):
+        for start in _STARTS:
+            _, face, local = _locate(mesh.nodes, faces, places, start)
+            values, _ = faces.shape_functions(local)
+            heights = np.einsum("pk,pk->p", values, mesh.nodes[faces.connectivity[face]][:, :, 2])
+            distances.append(np.abs(heights - touched))
+    return float(np.concatenate(distances).min())
+
+
 def _not_on_body(mesh: Mesh, place: Floats, side: Side, what: str) -> InputError:
     """Return the error for a place that is not on the body, with where the body reaches."""
     x, y = place

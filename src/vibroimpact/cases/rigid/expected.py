@@ -21,7 +21,7 @@ from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
-    from vibroimpact.cases.case import Case
+    from vibroimpact.cases.sections.schema import CaseTable
 
 # deflection of a square plate under a force at its centre over F a^2 / D: Timoshenko and
 # Woinowsky-Krieger 1959, Tables 23 and 37
@@ -29,7 +29,7 @@ _SUPPORTED = 0.0116
 _CLAMPED = 0.0056
 
 
-def expected_of(case: Case) -> DropSummary:
+def expected_of(case: CaseTable) -> DropSummary:
     """Return the expected peak values of the first impact without losses.
 
     They are NaN for a law that gives no force.
@@ -99,7 +99,7 @@ def expected_restitution(law: ContactLaw, mass: float, speed: float) -> Expected
     return ExpectedRestitution(asked, achieved, to_ask)
 
 
-def first_restitution(case: Case) -> ExpectedRestitution:
+def first_restitution(case: CaseTable) -> ExpectedRestitution:
     """Return the restitution that the law of a case achieves at the first touch.
 
     In a liquid the parameter is still that in air.
@@ -119,7 +119,7 @@ def first_restitution(case: Case) -> ExpectedRestitution:
     return expected._replace(to_ask=to_ask)
 
 
-def _deflection(case: Case, speed: float) -> float:
+def _deflection(case: CaseTable, speed: float) -> float:
     """Return the estimated deflection of an elastic plate at the contact point [m].
 
     NaN for a rigid plate.
