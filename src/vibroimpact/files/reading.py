@@ -10,8 +10,9 @@ import stat
 from codecs import register_error
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from hashlib import sha256
-from io import BufferedReader, FileIO, TextIOWrapper
+from io import BufferedReader, BytesIO, FileIO, TextIOWrapper
 from os import PathLike
 from typing import NamedTuple
 
@@ -33,6 +34,9 @@ _OPENING = (
     | getattr(os, "O_BINARY", 0)
 )
 """Non-blocking, since a pipe may have taken the place of the file since its type was checked."""
+
+_RECEIVED: ContextVar[tuple[str, bytes] | None] = ContextVar("received", default=None)
+"""Name and content of the file that is read from memory."""
 
 _NO_FILES = {
     stat.S_IFDIR: "a directory",
@@ -59,6 +63,30 @@ class FileKind(NamedTuple):
     what: str
     largest: int
     smaller: str
+
+
+@contextmanager
+def received(name: str, content: bytes) -> Iterator[None]:
+    """Read a file from memory within the block, such as one that came through a browser.
+
+    Parameters
+    ----------
+    name : str
+        The path by which it is read; a file of this path on the disk is not touched.
+    content : bytes
+        Its content.
+
+    Examples
+    --------
+    >>> with received("drop.csv", b"time_s,force_N"):
+    ...     read_bytes("drop.csv", FileKind("a table is text", 1000, "keep a part"))
+    b'time_s,force_N'
+    """
+    token = _RECEIVED.set((name, content))
+    try:
+        yield
+    finally:
+        _RECEIVED.reset(token)
 
 
 def read_bytes(path: str | PathLike[str], kind: FileKind) -> bytes:
@@ -259,8 +287,8 @@ def _blocks(path: str | PathLike[str], kind: FileKind) -> Iterator[bytes]:
 
 
 @contextmanager
-def opened(path: str | PathLike[str], kind: FileKind) -> Iterator[FileIO]:
-    """Yield a regular file of allowed size, opened for reading.
+def opened(path: str | PathLike[str], kind: FileKind) -> Iterator[FileIO | BytesIO]:
+    """Yield a regular file of allowed size, opened for reading, or one that was `received`.
 
     Errors in the block are raised as InputError too.
 
@@ -269,6 +297,12 @@ def opened(path: str | PathLike[str], kind: FileKind) -> Iterator[FileIO]:
     InputError
         As `read_bytes`.
     """
+    held = _RECEIVED.get()
+    if held is not None and os.fspath(path) == held[0]:
+        if len(held[1]) > kind.largest:
+            raise _too_large(kind)
+        yield BytesIO(held[1])
+        return
     try:
         _check(os.stat(path), kind)
         with open(path, "rb", opener=lambda name, _: os.open(name, _OPENING), buffering=0) as file:

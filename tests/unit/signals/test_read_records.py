@@ -11,6 +11,8 @@ import pytest
 from scipy.io import wavfile
 
 import vibroimpact as vi
+from vibroimpact.files.reading import FileKind, read_bytes, received
+from vibroimpact.signals.reading.record_files import records_in
 
 PLATE = {"size": ["300 mm", "200 mm", "8 mm"], "material": "steel"}
 SIGNAL = np.round(np.sin(np.arange(50) / 3.0) * np.exp(-np.arange(50) / 20.0), 6)
@@ -350,3 +352,26 @@ def test_what_is_no_record_is_said(name: str, message: str, tmp_path: Path) -> N
     (tmp_path / "photo.png").write_bytes(b"\x89PNG")
     with pytest.raises(vi.InputError, match=message):
         list(vi.signals.load_records(tmp_path / name))
+
+
+def test_a_file_in_memory_is_read_as_one_on_the_disk(tmp_path: Path) -> None:
+    table = "time [ms];force [kN]\n" + "".join(f"{place};{place % 3}\n" for place in range(9))
+    sound = tmp_path / "tap.wav"
+    wavfile.write(sound, 8000, (1000.0 * SIGNAL).astype(np.int16))
+    (tmp_path / "hammer.csv").write_text(table, encoding="utf-16")
+    for path in (sound, tmp_path / "hammer.csv"):
+        (record,) = records_in(path.name, path.read_bytes())
+        expected = only(path)
+        assert (record.name, record.unit, record.rate) == (
+            expected.name,
+            expected.unit,
+            expected.rate,
+        )
+        np.testing.assert_array_equal(record.value, expected.value)
+        assert record.source == path.name
+
+
+def test_a_file_in_memory_is_bounded_as_one_on_the_disk() -> None:
+    kind = FileKind("a table is text", 5, "keep a part")
+    with received("a.csv", b"123456"), pytest.raises(vi.InputError, match="larger than 5e-06 MB"):
+        read_bytes("a.csv", kind)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from io import SEEK_CUR, SEEK_END, SEEK_SET, FileIO
+from io import SEEK_CUR, SEEK_END, SEEK_SET, BytesIO, FileIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -65,7 +65,7 @@ def coded_records(path: Path) -> Iterator[Record]:
         raise with_path(path, error) from None
 
 
-def _records(file: FileIO, path: Path) -> Iterator[Record]:
+def _records(file: FileIO | BytesIO, path: Path) -> Iterator[Record]:
     """Yield the channels of an opened file."""
     _check_pyav(path.suffix)
     import av
@@ -124,7 +124,7 @@ class _Opened:
     FFmpeg seeks before the begin of files that are too short: there this stays at it.
     """
 
-    def __init__(self, file: FileIO) -> None:
+    def __init__(self, file: FileIO | BytesIO) -> None:
         self.read = file.read
         self.tell = file.tell
         self._file = file

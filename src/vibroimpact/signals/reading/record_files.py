@@ -8,7 +8,7 @@ from os import PathLike
 from pathlib import Path
 
 from vibroimpact.errors import InputError
-from vibroimpact.files.reading import with_path
+from vibroimpact.files.reading import received, with_path
 from vibroimpact.measurements.universal_file import is_universal
 from vibroimpact.signals.reading.coded_sound import FORMATS as CODED_SOUND
 from vibroimpact.signals.reading.coded_sound import coded_records
@@ -29,6 +29,9 @@ _READERS = {
     ".h5": netcdf_records,
     **dict.fromkeys(CODED_SOUND, coded_records),
 }
+FROM_MEMORY = (".wav", *TABLES)
+"""Endings of files whose content is enough."""
+
 _WHOLE = ("result.nc", "dataset.nc", "study.nc")
 """Files that hold all signals of a folder of this program."""
 
@@ -86,6 +89,40 @@ def load_records(path: str | PathLike[str], columns: str | None = None) -> Itera
     for file in files:
         for record in _records_of(file, columns):
             yield replace(record, source=str(file))
+
+
+def records_in(name: str, content: bytes) -> list[Record]:
+    """Return the records of a WAV file or a table whose content is in memory.
+
+    Parameters
+    ----------
+    name : str
+        Its name, whose ending states the format; nothing of this name is read from the disk.
+    content : bytes
+        Its content.
+
+    Raises
+    ------
+    InputError
+        If it is neither, or can't be read.
+
+    Examples
+    --------
+    >>> (force,) = records_in("hammer.csv", b"time [ms],force [kN]\\n0,1\\n1,2\\n")
+    >>> force.name, force.value.tolist(), force.source
+    ('force', [1000.0, 2000.0], 'hammer.csv')
+    """
+    file = Path(name)
+    if file.suffix.lower() not in FROM_MEMORY:
+        raise with_path(
+            name,
+            InputError(
+                "its format does not follow from its name; read here are files ending in "
+                f"{', '.join(FROM_MEMORY)}"
+            ),
+        )
+    with received(str(file), content):
+        return [replace(record, source=name) for record in _records_of(file, None)]
 
 
 def _records_of(file: Path, columns: str | None) -> Iterator[Record]:

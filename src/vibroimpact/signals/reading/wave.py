@@ -7,7 +7,7 @@ channels at once as need little memory.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from io import FileIO
+from io import BytesIO, FileIO
 from math import isfinite
 from pathlib import Path
 
@@ -98,7 +98,7 @@ def _doubts(header: WaveHeader) -> tuple[str, ...]:
     return (doubt,)
 
 
-def _samples(file: FileIO, header: WaveHeader, channels: range) -> Floats:
+def _samples(file: FileIO | BytesIO, header: WaveHeader, channels: range) -> Floats:
     """Return the samples of some channels, (channels, samples), with full scale as 1."""
     samples = np.empty((len(channels), header.samples))
     frame = header.channels * header.width

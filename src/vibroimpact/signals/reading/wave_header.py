@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 import struct
-from io import FileIO
+from io import BytesIO, FileIO
 from os import SEEK_END
 from typing import NamedTuple
 
@@ -85,7 +85,7 @@ class _Format(NamedTuple):
     floating: bool
 
 
-def read_wave_header(file: FileIO) -> WaveHeader:
+def read_wave_header(file: FileIO | BytesIO) -> WaveHeader:
     """Read the header of a WAV file, by its chunks.
 
     Raises
@@ -129,7 +129,7 @@ def read_wave_header(file: FileIO) -> WaveHeader:
     return WaveHeader(*form, order, start, samples, size // frame, full_scale)
 
 
-def _bytes_at(file: FileIO, offset: int, size: int) -> bytes:
+def _bytes_at(file: FileIO | BytesIO, offset: int, size: int) -> bytes:
     file.seek(offset)
     return file.read(size) or b""
 
