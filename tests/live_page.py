@@ -4,6 +4,7 @@ it shows.
 
 from __future__ import annotations
 
+import base64
 from typing import TYPE_CHECKING, Any
 
 from plotted import until
@@ -120,3 +121,18 @@ def tables(page: Page, which: str) -> list[list[str]]:
 def wait_for_fault(page: Page) -> list[str]:
     until(page, "() => !document.getElementById('faults').hidden")
     return faults(page)
+
+
+def drop_file(page: Page, name: str, content: bytes) -> None:
+    """Drop a file over the page, as from the desktop."""
+    transfer = page.evaluate_handle(
+        """([name, content]) => { const transfer = new DataTransfer();
+        const bytes = Uint8Array.from(atob(content), (letter) => letter.charCodeAt(0));
+        transfer.items.add(new File([bytes], name)); return transfer; }""",
+        [name, base64.b64encode(content).decode()],
+    )
+    page.dispatch_event("body", "dragenter", {"dataTransfer": transfer})
+    assert page.locator("#drop").is_visible()
+    page.dispatch_event("body", "dragover", {"dataTransfer": transfer})
+    page.dispatch_event("body", "drop", {"dataTransfer": transfer})
+    assert page.locator("#drop").is_hidden()

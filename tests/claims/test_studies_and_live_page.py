@@ -8,6 +8,8 @@ from pathlib import Path
 import vibroimpact as vi
 from stated_numbers import ROOT, page_text, says
 from vibroimpact.app.draft import _POINTS, _TOLERANCE
+from vibroimpact.app.measurement import MOST_RECORDED
+from vibroimpact.app.messages import LONGEST_FILE
 from vibroimpact.app.served_cases import (
     LONGEST_RUN,
     MOST_IMPACTS,
@@ -23,6 +25,7 @@ from vibroimpact.cli.studies import MOST_BYTES_UNCONFIRMED, MOST_DROPS_UNCONFIRM
 from vibroimpact.studies.planning.design import MOST_DROPS
 from vibroimpact.studies.report.sensitivity import MOST_LEFT_OUT
 from vibroimpact.studies.report.tables import doubt_sentences
+from vibroimpact.test_analysis.alignment import ALIGNED
 
 STUDIES = "docs/studies.md"
 LIVE = "docs/live-page.md"
@@ -66,3 +69,13 @@ def test_sizes_of_cases() -> None:
     assert MOST_SECONDS == 180.0
     assert "At most twelve windows" in page_text(LIVE)
     assert MOST_WINDOWS == 12
+
+
+def test_measurements() -> None:
+    says(LIVE, "aligned in time by their first {} ms", 1e3 * ALIGNED)
+    says(
+        LIVE,
+        "A file of a measurement may have {} MB and {} samples",
+        1e-6 * LONGEST_FILE,
+        MOST_RECORDED,
+    )

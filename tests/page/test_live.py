@@ -4,7 +4,6 @@ files and downloads do what they say.
 
 from __future__ import annotations
 
-import base64
 import csv
 import io
 import re
@@ -21,6 +20,7 @@ import vibroimpact as vi
 from live_page import (
     ELASTIC,
     RIGID,
+    drop_file,
     faults,
     open_live,
     row,
@@ -237,21 +237,6 @@ def test_the_ball_stays_under_the_pointer_while_progress_is_shown(
     page.mouse.up()
     settle(page)
     assert shown(page)["drop"]["position"] == pytest.approx([0.05, -0.03], abs=6e-4)
-
-
-def drop_file(page: Page, name: str, content: bytes) -> None:
-    """Drop a file over the page, as from the desktop."""
-    transfer = page.evaluate_handle(
-        """([name, content]) => { const transfer = new DataTransfer();
-        const bytes = Uint8Array.from(atob(content), (letter) => letter.charCodeAt(0));
-        transfer.items.add(new File([bytes], name)); return transfer; }""",
-        [name, base64.b64encode(content).decode()],
-    )
-    page.dispatch_event("body", "dragenter", {"dataTransfer": transfer})
-    assert page.locator("#drop").is_visible()
-    page.dispatch_event("body", "dragover", {"dataTransfer": transfer})
-    page.dispatch_event("body", "drop", {"dataTransfer": transfer})
-    assert page.locator("#drop").is_hidden()
 
 
 def test_a_file_is_dropped_or_chosen(page: Page, server: Server) -> None:

@@ -1,4 +1,4 @@
-"""What the live page offers: shipped cases, laws, materials, colours, length of messages."""
+"""What the live page offers: shipped cases, laws, materials, colours, exports, lengths."""
 
 from __future__ import annotations
 
@@ -6,17 +6,19 @@ from dataclasses import fields
 from functools import cache
 from typing import Any
 
-from vibroimpact.app.messages import LONGEST
+from vibroimpact.app.messages import LONGEST, LONGEST_FILE
 from vibroimpact.cases.fields.elastic_body import ELASTIC_KEYS
 from vibroimpact.cases.reader import shipped_cases
 from vibroimpact.contact.friction.law import FrictionLaw, ImpulsiveFriction
 from vibroimpact.contact.friction.registry import friction_laws
 from vibroimpact.contact.law import unit_of
 from vibroimpact.contact.registry import contact_laws
+from vibroimpact.exporting.export_format import export_formats
 from vibroimpact.law_sheets.plain_math import plain_text
 from vibroimpact.law_sheets.text import law_text
 from vibroimpact.materials import material_library
 from vibroimpact.report.page import palette
+from vibroimpact.signals.reading.record_files import FROM_MEMORY
 from vibroimpact.units.display import multiple
 
 
@@ -42,7 +44,12 @@ def offer() -> dict[str, Any]:
         "friction_coefficient": _FRICTION_COEFFICIENT,
         "materials": list(material_library()),
         "palette": palette(),
+        "exports": {
+            name: export_format.program for name, export_format in export_formats().items()
+        },
+        "endings": list(FROM_MEMORY),
         "longest": LONGEST,
+        "longest_file": LONGEST_FILE,
     }
 
 

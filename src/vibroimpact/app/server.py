@@ -20,7 +20,7 @@ from starlette.types import ASGIApp, Receive, Scope
 from starlette.types import Send as Answer
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from vibroimpact.app.messages import LONGEST
+from vibroimpact.app.messages import LONGEST_OF_ALL
 from vibroimpact.app.session import Session
 from vibroimpact.report.page import plotly_script
 
@@ -230,7 +230,7 @@ def serve(sockets: list[Any], port: int, started: Callable[[], None]) -> None:
     config = uvicorn.Config(
         application(port),
         log_level="warning",
-        ws_max_size=LONGEST,
+        ws_max_size=LONGEST_OF_ALL,
         ws_per_message_deflate=False,
         lifespan="off",
         access_log=False,

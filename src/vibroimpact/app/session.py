@@ -8,22 +8,23 @@ import logging
 from collections.abc import Awaitable, Callable, Mapping
 from functools import partial
 from threading import Event
-from typing import Any
+from typing import Any, NamedTuple
 
 from vibroimpact.app.messages import Message, read_message
 from vibroimpact.app.offer import offer
+from vibroimpact.app.saved import files_of
 from vibroimpact.app.served_cases import without_other_work
-from vibroimpact.app.state import MODES, State, Tell, state_of
+from vibroimpact.app.state import MODES, State, Tell, state_of, table_document
 from vibroimpact.cases.reader import load_table, parse_case, shipped_cases
+from vibroimpact.charts.chart import Chart
+from vibroimpact.charts.made import drawn
 from vibroimpact.charts.pack import pack
+from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.compiler.notice import heard_by
 from vibroimpact.errors import ComputationError, InputError, choices
 from vibroimpact.files.hdf5 import short_reason
-from vibroimpact.files.plain_names import identifier, plain_names
 from vibroimpact.quoting import quoted
-from vibroimpact.report.page_of_report import page_of_report
-from vibroimpact.results.csv_files import signal_csv
-from vibroimpact.runs.report import report_of
+from vibroimpact.signals.record import Record
 
 Send = Callable[[bytes], Awaitable[None]]
 """Function that brings a message to the window."""
@@ -38,7 +39,7 @@ So charts follow a slider.
 """
 
 _MOST_FILES = 2
-"""Number of reports and signals that wait for the one being made.
+"""Number of reports, figures, measurements and the like that wait for the one being made.
 
 With more, the session takes no message until one is made.
 """
@@ -46,6 +47,14 @@ With more, the session takes no message until one is made.
 
 class GivenUp(Exception):
     """What is being computed is no longer wanted."""
+
+
+class _Measurement(NamedTuple):
+    """A measurement that is open: name of its file, records, and charts by their names."""
+
+    name: str
+    records: list[Record]
+    charts: dict[str, Chart]
 
 
 class Session:
@@ -66,6 +75,7 @@ class Session:
         self._stop = Event()
         self._changed = asyncio.Event()
         self._last_state: State | None = None  # computed in full
+        self._measurement: _Measurement | None = None
         # the files to make, each of a state
         self._files: asyncio.Queue[tuple[Message, State | None]] = asyncio.Queue(_MOST_FILES)
 
@@ -90,7 +100,7 @@ class Session:
                 self._want(message)
             case "cancel":
                 await self._cancel()
-            case "report" | "signals":
+            case _:
                 await self._files.put((message, self._last_state))
 
     def _want(self, message: Message) -> None:
@@ -124,8 +134,45 @@ class Session:
     async def _make_files(self) -> None:
         while True:
             message, state = await self._files.get()
-            content = partial(_files, message.type, state)
-            await self._answer(message.number, self._reply("files", message, content))
+            content = message.content
+            match message.type:
+                case "measurement" | "overlay":
+                    overlay = partial(self._overlay, content, state)
+                    work = self._reply("overlay", message, overlay)
+                case "forget":
+                    self._measurement = None
+                    continue
+                case kind:
+                    charts = {}
+                    if self._measurement is not None:
+                        charts = self._measurement.charts
+                    files = partial(files_of, kind, content, state, charts)
+                    work = self._reply("files", message, files)
+            await self._answer(message.number, work)
+
+    def _overlay(self, content: Mapping[str, Any], state: State | None) -> dict[str, Any]:
+        """Return a measurement over what was computed: one that comes, or that of before."""
+        # imports scipy.signal
+        from vibroimpact.app.measurement import compared, read_measurement
+
+        if "data" in content:
+            self._measurement = None
+            self._measurement = _Measurement(
+                content["name"], read_measurement(content["name"], content["data"]), {}
+            )
+        measurement = self._measurement
+        if measurement is None:
+            raise InputError("no measurement is open; drop its file on the page")
+        if state is None:
+            raise InputError("nothing was computed in full yet")
+        shown = compared(measurement.records, state.case, state.response)
+        self._measurement = measurement._replace(charts={one.name: one for one in shown.charts})
+        return {
+            "name": measurement.name,
+            "charts": [drawn(chart, plotly_chart) for chart in shown.charts],
+            "tables": [table_document(table) for table in shown.tables],
+            "notes": shown.notes,
+        }
 
     async def _compute_cases(self) -> None:
         try:
@@ -239,26 +286,3 @@ def _table_to_open(content: dict[str, Any]) -> dict[str, Any]:
             f"{choices(names, source, 'cases')}"
         )
     return load_table(source)
-
-
-def _files(kind: str, state: State | None) -> dict[str, Any]:
-    """Return the report, or the signals, of a state as files."""
-    if state is None:
-        raise InputError("nothing was computed in full yet")
-    result = state.result
-    if kind == "report":
-        stem = identifier(result.name, "A-Za-z0-9", "drop", "-")
-        report = {
-            "name": f"{stem}.html",
-            "kind": "text/html",
-            "text": page_of_report(report_of(result)),
-        }
-        return {"files": [report]}
-    if not result.signals:
-        raise InputError("there are no signals: the case has no sensors", "sensors")
-    names = plain_names(list(result.signals))
-    tables = [
-        {"name": f"{names[name]}.csv", "kind": "text/csv", "text": signal_csv(signal)}
-        for name, signal in result.signals.items()
-    ]
-    return {"files": tables}

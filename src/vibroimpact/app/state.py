@@ -11,10 +11,13 @@ import tomli_w
 from vibroimpact.app.draft import draft_of, drafted
 from vibroimpact.app.messages import Detail
 from vibroimpact.app.served_cases import check_bounds, check_table
+from vibroimpact.cases.case import Case
 from vibroimpact.cases.reader import case_of
 from vibroimpact.charts.made import drawn, made_charts
 from vibroimpact.charts.plotly import plotly_chart
+from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.report.report import Table
 from vibroimpact.report.result_warning import size_of
 from vibroimpact.results.result import Result, result_of
 from vibroimpact.runs.answer import answer_of, answer_of_impacts
@@ -30,8 +33,10 @@ MODES = "computing modes"
 
 
 class State(NamedTuple):
-    """A case that was computed: its result, and the document that shows it."""
+    """A case that was computed: its response and result, and the document that shows it."""
 
+    case: Case
+    response: Response
     result: Result
     document: dict[str, Any]
 
@@ -76,7 +81,7 @@ def state_of(
     tell("reading histories", 1.0)
     result = draft_of(response) if is_draft else result_of(response)
     tell("drawing", 1.0)
-    return State(result, _document(result, table, detail, looked_at))
+    return State(case, response, result, _document(result, table, detail, looked_at))
 
 
 def _warnings(result: Result) -> list[dict[str, str]]:
@@ -122,7 +127,11 @@ def _document(
 
 
 def _impacts(result: Result) -> dict[str, Any]:
-    table = impact_table(result)
+    return table_document(impact_table(result))
+
+
+def table_document(table: Table) -> dict[str, Any]:
+    """Return a table as the page shows it."""
     return {
         "headers": table.headings,
         "rows": table.rows,

@@ -248,10 +248,15 @@ def on_common_time(records: Sequence[Record]) -> tuple[Floats, float]:
     return np.stack([value[:samples] for value in from_start]), start
 
 
+def has_unit_of(record: Record, sensor: Sensor) -> bool:
+    """Return whether a record is in the unit that a sensor reads."""
+    return record.unit.replace("^", "") == sensor.unit or (record.unit, sensor.unit) == _STRAIN
+
+
 def _check(record: Record, sensor: Sensor) -> None:
     """Raise InputError unless a record can be that of a sensor."""
     name = quoted(record.name)
-    if record.unit.replace("^", "") != sensor.unit and (record.unit, sensor.unit) != _STRAIN:
+    if not has_unit_of(record, sensor):
         unit = "without a unit"
         if record.unit:
             unit = f"in {record.unit}"

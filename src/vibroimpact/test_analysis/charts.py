@@ -43,7 +43,7 @@ def correlation_charts(correlation: Correlation) -> list[Chart]:
     ['overlay', 'responses', 'frac', 'damping']
     """
     makers = {
-        "overlay": partial(_overlay, correlation),
+        "overlay": partial(overlay_chart, correlation),
         "responses": partial(_responses, correlation),
         "frac": partial(frac_chart, correlation, what_frac_is_of(correlation)),
     }
@@ -63,7 +63,8 @@ def _name(criteria: Criteria, number: int) -> str:
     return shortened(visible(criteria.sensors[number].name), 40)
 
 
-def _overlay(correlation: Correlation) -> Chart:
+def overlay_chart(correlation: Correlation) -> Chart:
+    """Return the chart of the records over their simulation, with the difference."""
     begin = Axis("Time since first touch", "s")
     whole = Axis("Time since first touch", "s")
     rows: list[tuple[Panel, ...]] = []

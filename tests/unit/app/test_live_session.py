@@ -16,8 +16,9 @@ from typing import Any
 import pytest
 
 import vibroimpact as vi
+from vibroimpact.app import saved
 from vibroimpact.app import session as sessions
-from vibroimpact.app.messages import LONGEST, read_message
+from vibroimpact.app.messages import LONGEST, LONGEST_FILE, read_message
 from vibroimpact.app.served_cases import LONGEST_RUN, MOST_IMPACTS, MOST_MODES, MOST_SENSORS
 from vibroimpact.app.session import Session
 from vibroimpact.app.state import state_of
@@ -233,8 +234,8 @@ def test_cancel_does_not_wait_for_a_report(monkeypatch: pytest.MonkeyPatch) -> N
             time.sleep(0.01)
         return state_of(table, "full", lambda what, part: None)
 
-    monkeypatch.setattr(sessions, "report_of", lambda result: result)
-    monkeypatch.setattr(sessions, "page_of_report", slow)
+    monkeypatch.setattr(saved, "report_of", lambda result: result)
+    monkeypatch.setattr(saved, "page_of_report", slow)
     monkeypatch.setattr(sessions, "state_of", long_second)
 
     async def talk(session: Session, heard: list[dict[str, Any]]) -> None:
@@ -260,7 +261,7 @@ def test_a_report_that_fails_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     def fails(result: Any) -> str:
         raise ZeroDivisionError("by nothing")
 
-    monkeypatch.setattr(sessions, "report_of", fails)
+    monkeypatch.setattr(saved, "report_of", fails)
 
     async def talk(session: Session, heard: list[dict[str, Any]]) -> None:
         await session.receive(case(1, RIGID))
@@ -484,3 +485,66 @@ def test_broken_messages_are_answered_by_a_fault() -> None:
 def test_a_message_has_a_largest_size() -> None:
     with pytest.raises(InputError, match="bytes"):
         read_message(" " * (LONGEST + 1))
+
+
+def measurement(number: int, name: str, content: bytes) -> bytes:
+    line = json.dumps({"type": "measurement", "number": number, "name": name})
+    return b"\0" + line.encode() + b"\n" + content
+
+
+def test_a_measurement_is_kept_until_it_is_forgotten() -> None:
+    """It comes once, and lies over each case that is computed after it."""
+    rows = [f"{1e-5 * row!r},{max(0.0, 100.0 - (row - 50) ** 2)!r}" for row in range(100)]
+    content = "\n".join(["time [s],force [N]", *rows]).encode()
+
+    def ask(kind: str, number: int, **more: str) -> str:
+        return json.dumps({"type": kind, "number": number, **more})
+
+    async def talk(session: Session, heard: list[dict[str, Any]]) -> None:
+        kinds = ("overlay", "fault", "files")
+        await session.receive(ask("overlay", 1))
+        await until(heard, 1, *kinds)
+        await session.receive(case(2, RIGID))
+        await until(heard, 2)
+        await session.receive(measurement(3, "../hammer.csv", content))
+        await until(heard, 3, *kinds)
+        await session.receive(case(4, changed(RIGID, drop={"height": 1.0})))
+        await until(heard, 4)
+        await session.receive(ask("overlay", 5))
+        await until(heard, 5, *kinds)
+        await session.receive(ask("figure", 6, chart="record", format="svg"))
+        await until(heard, 6, *kinds)
+        await session.receive(ask("forget", 7))
+        await session.receive(ask("overlay", 8))
+        await until(heard, 8, *kinds)
+
+    heard = {one["number"]: one for one in told(talk) if one["type"] != "progress"}
+    assert heard[1]["lines"] == ["no measurement is open; drop its file on the page"]
+    assert heard[3]["name"] == "hammer.csv"
+    (before,), (after,) = heard[3]["tables"][0]["rows"], heard[5]["tables"][0]["rows"]
+    assert before[1] == after[1] == "100.0"
+    assert float(after[2]) < 0.6 * float(before[2])
+    assert heard[6]["files"][0]["name"].endswith("-record.svg")
+    assert heard[8]["lines"] == heard[1]["lines"]
+
+
+@pytest.mark.parametrize(
+    ("message", "words"),
+    [
+        (b"\0", "the message is not JSON"),
+        (measurement(1, "a" * 3000, b""), "the line ahead of a file is too long"),
+        (b'\0{"type": "case", "case": {}}\n', "a message is a table with a type: measurement"),
+        (b'\0{"type": "measurement"}\n', "a message of type measurement has a name"),
+        (b'\0{"type": "measurement", "name": 3}\n', "name of a message must be a text"),
+        (b'{"type": "figure", "chart": "force"}', "a message of type figure has a format"),
+        (
+            measurement(1, "/tmp/hammer.csv", bytes(LONGEST_FILE + 1)),
+            "hammer.csv: the file has 16000001 bytes, more than the 16000000 of the live page; keep",
+        ),
+    ],
+    ids=["no line", "long line", "another type", "no name", "a number", "no format", "large"],
+)
+def test_a_message_with_a_file_is_one_of_the_protocol(message: bytes, words: str) -> None:
+    with pytest.raises(InputError) as refused:
+        read_message(message)
+    assert str(refused.value).startswith(words)

@@ -7,12 +7,14 @@
   const SETTLED = 250;       // after the last change the case is computed in full [ms]
 
   // `asked`: number of the case that is under way, `tables`: those asked for, by number; `last`: what is shown, and `table`: of which case;
-  // `opening`: number and name of the shipped case that is being opened, `opened`: name and table of the one that was.
+  // `opening`: number and name of the shipped case that is being opened, `opened`: name and table of the one that was;
+  // `measured`: the file of the measurement, whether it was `sent`, and the number of the `overlay` asked for; `files`: numbers of the files asked for.
   const state = {
     socket: null, number: 0, asked: 0, shown: 0, wanted: null, tables: new Map(), offer: null, last: null, table: null, held: null, view: -1,
-    retry: 500, timer: 0, notes: [], opening: [0, ""], opened: ["", ""],
+    retry: 500, timer: 0, notes: [], opening: [0, ""], opened: ["", ""], measured: null, overlay: 0, sent: false, files: new Set(),
   };
   const charts = new Map();
+  const overlays = new Map();   // the charts of a measurement
   const controls = new vibroimpact.Controls($("controls"), (settled) => changed(settled));
   let scene = null;
 
@@ -50,10 +52,17 @@
 
   // ---- asking -----------------------------------------------------------------------------------------
 
+  const isOpen = () => Boolean(state.socket) && state.socket.readyState === WebSocket.OPEN;
   const send = (message) => {
-    if (!state.socket || state.socket.readyState !== WebSocket.OPEN) return false;
+    if (!isOpen()) return false;
     state.socket.send(JSON.stringify(message));
     return true;
+  };
+  // Ask for files, which the browser saves when they come.
+  const askForFiles = (message) => {
+    const number = ++state.number;
+    $("saved").replaceChildren();
+    if (send({ ...message, number })) state.files.add(number);
   };
   const isTooLong = (message) => {
     const size = new TextEncoder().encode(JSON.stringify(message)).length, most = state.offer?.longest;
@@ -65,6 +74,7 @@
     const whole = !busy && state.last?.detail === "full";
     $("results").setAttribute("aria-busy", String(busy));
     $("get-report").disabled = !whole;
+    $("get-export").disabled = !whole;
     $("get-signals").disabled = !whole || !(state.last.case.sensors || []).length;
   };
 
@@ -109,6 +119,8 @@
       state.offer = controls.offer = message;
       vibroimpact.setPalette(message.palette);
       $("shipped").replaceChildren(make("option", { value: "", text: "your own" }), ...Object.entries(message.cases).map(([name, title]) => make("option", { value: name, text: `${name}: ${title}` })));
+      $("export").replaceChildren(...Object.entries(message.exports).map(([name, program]) => make("option", { value: name, text: `${name}: ${program}` })));
+      $("file").accept = [".toml", ...message.endings].join(",");
       state.retry = 500;
       $("status").textContent = "";
       showShipped();
@@ -136,6 +148,8 @@
       show(message, table);
     },
     fault(message) {
+      if (state.files.delete(message.number)) { showSaved(message.lines, true); return; }
+      if (message.number === state.overlay) { state.sent = false; showOverlay({ lines: message.lines }); return; }
       const beginning = controls.beginning && state.tables.get(message.number) === controls.table;
       if (finished(message.number)) { stopWaiting(); if (beginning) goBack(); else if (controls.table) controls.showAsked(); }
       if (message.number === state.opening[0]) { setBusy(Boolean(state.asked)); showShipped(); }
@@ -148,14 +162,18 @@
       $("status").textContent = "Given up; the last case is shown.";
     },
     files(message) {
+      state.files.delete(message.number);
+      showSaved(message.notes || []);
       for (const file of message.files) {
-        const link = make("a", { href: URL.createObjectURL(new Blob([file.text], { type: file.kind })), download: file.name });
+        const content = file.bytes ? Uint8Array.from(file.bytes) : file.text;
+        const link = make("a", { href: URL.createObjectURL(new Blob([content], { type: file.kind })), download: file.name });
         document.body.append(link);
         link.click();
         link.remove();
         setTimeout(() => URL.revokeObjectURL(link.href), 10000);
       }
     },
+    overlay(message) { if (message.number === state.overlay) showOverlay(message); },
   };
 
   // What was asked for is done, whatever came of it; return whether nothing else is wanted.
@@ -175,7 +193,8 @@
     controls.showFaults(lines);
     $("faults").hidden = !lines.length;
     $("faults").replaceChildren(...lines.map((line) => make("p", { text: line })));
-    const isOlder = lines.length > 0 && Boolean(state.last);
+    // a file that is not understood leaves controls and results as they are
+    const isOlder = lines.length > 0 && Boolean(state.last) && controls.table !== state.table;
     $("older").hidden = !isOlder;
     $("results").classList.toggle("older", isOlder);
   };
@@ -202,6 +221,7 @@
     showShipped();
     $("get-toml").disabled = false;
     if (settled) remember(table);
+    if (message.detail === "full") askForOverlay(); else $("overlay").classList.add("older");
     Promise.all([...charts.values()].filter((one) => one.near).map((one) => one.drawing)).then(() => {
       document.documentElement.dataset.drawn = String(message.number);
       document.documentElement.dataset.detail = message.detail;
@@ -268,29 +288,46 @@
       showPlace();
     }
     const names = new Set(all);
-    for (const [name, chart] of charts) {
-      if (names.has(name)) continue;
-      Plotly.purge(chart.element);
-      chart.end();
-      chart.element.closest("section").remove();
-      charts.delete(name);
-    }
+    for (const name of [...charts.keys()]) if (!names.has(name)) endChart(charts, name);
     let before = null;
     for (const chart of given) {
       const ghost = state.held ? state.held.charts.find((one) => one.name === chart.name) || null : null;
-      if (!charts.has(chart.name)) {
-        const element = make("div", { class: "chart", role: "img", style: `min-height: ${chart.layout.height + 90}px` });
-        (chart.name === "position" ? $("lead-chart") : $("charts")).append(make("section", { id: `chart-${chart.name}` }, make("h2", { text: chart.title }), make("p", { class: "headline" }), element));
-        charts.set(chart.name, new vibroimpact.Chart(element, chart));
-      }
-      const one = charts.get(chart.name), section = one.element.parentElement;
+      const section = showChart(charts, chart.name === "position" ? $("lead-chart") : $("charts"), chart, ghost);
       // charts stand in the order given, also those that come later
       if (chart.name !== "position") { if (section.previousElementSibling !== before) $("charts").insertBefore(section, before ? before.nextSibling : $("charts").firstChild); before = section; }
-      section.querySelector("h2").textContent = chart.title;
-      one.element.setAttribute("aria-label", `${chart.title}. ${chart.caption}`);
-      one.update({ chart, ghost, view: state.view < 0 || state.view >= chart.views.length ? null : state.view });
-      headline(one);
     }
+  };
+
+  // Show a chart in its section, which is made at the end of a part of the page if there is none; return the section.
+  const showChart = (known, part, chart, ghost) => {
+    if (!known.has(chart.name)) {
+      const element = make("div", { class: "chart", role: "img", style: `min-height: ${chart.layout.height + 90}px` });
+      part.append(make("section", { id: `chart-${chart.name}` }, make("div", { class: "heading" }, make("h2", { text: chart.title }), saveMenu(chart)), make("p", { class: "headline" }), element));
+      known.set(chart.name, new vibroimpact.Chart(element, chart));
+    }
+    const one = known.get(chart.name), section = one.element.parentElement;
+    section.querySelector("h2").textContent = chart.title;
+    one.element.setAttribute("aria-label", `${chart.title}. ${chart.caption}`);
+    one.update({ chart, ghost, view: viewOf(chart) });
+    headline(one);
+    return section;
+  };
+  const viewOf = (chart) => (state.view < 0 || state.view >= chart.views.length ? null : state.view);
+  const endChart = (known, name) => {
+    const chart = known.get(name);
+    Plotly.purge(chart.element);
+    chart.end();
+    chart.element.closest("section").remove();
+    known.delete(name);
+  };
+  // The formats in which a chart is saved as a figure.
+  const saveMenu = (chart) => {
+    const buttons = ["png", "svg", "pdf"].map((format) => {
+      const button = make("button", { type: "button", text: format.toUpperCase(), "aria-label": `${chart.title} as ${format.toUpperCase()}` });
+      button.addEventListener("click", () => askForFiles({ type: "figure", chart: chart.name, format }));
+      return button;
+    });
+    return make("details", { class: "save" }, make("summary", { text: "Save", "aria-label": `Save ${chart.title}` }), make("span", { class: "pair" }, ...buttons));
   };
 
   const headline = (one) => { one.element.parentElement.querySelector(".headline").textContent = one.headline; };
@@ -304,7 +341,7 @@
   const showView = (number) => {
     state.view = number;
     showPlace();
-    for (const one of charts.values()) { one.update({ view: number < 0 || number >= one.chart.views.length ? null : number, ranges: {} }); headline(one); }
+    for (const one of [...charts.values(), ...overlays.values()]) { one.update({ view: viewOf(one.chart), ranges: {} }); headline(one); }
   };
 
   const showScene = (given, waiting) => {
@@ -325,10 +362,72 @@
     $("sound-play").disabled = message.detail !== "full";
   };
 
+  // ---- a measurement over what is computed ------------------------------------------------------------------
+
+  const openMeasurement = (file) => {
+    closeMeasurement();
+    state.measured = file;
+    $("overlay").hidden = false;
+    $("overlay-title").textContent = `Measurement: ${file.name}`;
+    $("overlay").scrollIntoView({ block: "start" });
+    $("overlay").focus({ preventScroll: true });
+    if (file.size > state.offer.longest_file) {
+      state.measured = null;
+      showOverlay({ lines: [`${file.name}: the file has ${file.size} bytes, more than the ${state.offer.longest_file} of the live page; keep the part with the impacts, or use: vibroimpact correlate`] });
+      return;
+    }
+    askForOverlay();
+  };
+
+  // The file is sent once; what is computed later is laid under the measurement that the server keeps.
+  const askForOverlay = async () => {
+    const file = state.measured;
+    if (!file || !isOpen() || state.last?.detail !== "full") return;
+    const number = ++state.number;
+    state.overlay = number;
+    $("overlay").setAttribute("aria-busy", "true");
+    if (state.sent) { send({ type: "overlay", number }); return; }
+    state.sent = true;
+    const line = `\0${JSON.stringify({ type: "measurement", number, name: file.name.slice(-200) })}\n`;
+    const block = await new Blob([line, file]).arrayBuffer();
+    if (isOpen() && state.measured === file) state.socket.send(block); else state.sent = false;
+  };
+
+  // Show a measurement over what was computed, or the lines of a message in its place.
+  const showOverlay = ({ charts: given = [], tables = [], notes = [], lines = [] }) => {
+    $("overlay").setAttribute("aria-busy", "false");
+    $("overlay").classList.remove("older");
+    $("overlay-faults").replaceChildren(...lines.map((text) => make("p", { text })));
+    $("overlay-notes").replaceChildren(...notes.map((text) => make("p", { class: "note", text: `${text[0].toUpperCase()}${text.slice(1)}.` })));
+    const names = new Set(given.map((chart) => chart.name));
+    for (const name of [...overlays.keys()]) if (!names.has(name)) endChart(overlays, name);
+    for (const chart of given) showChart(overlays, $("overlay-charts"), chart, null);
+    $("overlay-tables").replaceChildren(...tables.map(({ headers, rows }) => tableOf(headers, rows)));
+  };
+
+  const closeMeasurement = () => {
+    if (state.measured) send({ type: "forget", number: ++state.number });
+    Object.assign(state, { measured: null, sent: false, overlay: 0 });
+    showOverlay({});
+    $("overlay").hidden = true;
+  };
+
+  // What a format of an export can't hold, or why there is no file.
+  const showSaved = (lines, failed = false) => {
+    $("saved").classList.toggle("failed", failed);
+    $("saved").replaceChildren(...lines.map((text) => make("p", { text })));
+  };
+
   // ---- the controls of the page -------------------------------------------------------------------------------
 
   const openFile = async (file) => {
     if (!file) return;
+    const name = file.name.toLowerCase();
+    if (state.offer?.endings.some((ending) => name.endsWith(ending))) { openMeasurement(file); return; }
+    if (state.offer && !name.endsWith(".toml")) {
+      showFaults([`${file.name}: the page reads the TOML file of a case, and of a measurement files ending in ${state.offer.endings.join(", ")}; convert it, or use: vibroimpact correlate`]);
+      return;
+    }
     if (file.size > 150000) { showFaults([`${file.name}: the file has ${file.size} bytes, and a case is a page of text`]); return; }
     open({ text: await file.text() });
   };
@@ -340,7 +439,12 @@
     $("file").addEventListener("change", () => { openFile($("file").files[0]); $("file").value = ""; });
     for (const name of ["dragover", "dragenter"]) addEventListener(name, (event) => { if (event.dataTransfer?.types.includes("Files")) { event.preventDefault(); $("drop").hidden = false; } });
     addEventListener("dragleave", (event) => { if (!event.relatedTarget) $("drop").hidden = true; });
-    addEventListener("drop", (event) => { event.preventDefault(); $("drop").hidden = true; openFile(event.dataTransfer?.files[0]); });
+    addEventListener("drop", (event) => {
+      event.preventDefault();
+      $("drop").hidden = true;
+      const files = event.dataTransfer?.files || [];
+      if (files.length > 1) showFaults([`${files.length} files were dropped; the page opens one at a time`]); else openFile(files[0]);
+    });
     $("hold").addEventListener("click", () => {
       state.held = state.held ? null : state.last;
       $("hold").setAttribute("aria-pressed", String(Boolean(state.held)));
@@ -348,8 +452,10 @@
       if (state.last) { showImpacts(state.last.impacts); showLedger(state.last.ledger); showCharts(state.last.charts, state.last.names); }
     });
     $("get-toml").addEventListener("click", () => download("case.toml", state.last.toml, "application/toml"));
-    $("get-report").addEventListener("click", () => send({ type: "report", number: ++state.number }));
-    $("get-signals").addEventListener("click", () => send({ type: "signals", number: ++state.number }));
+    $("get-report").addEventListener("click", () => askForFiles({ type: "report" }));
+    $("get-signals").addEventListener("click", () => askForFiles({ type: "signals" }));
+    $("get-export").addEventListener("click", () => askForFiles({ type: "export", format: $("export").value }));
+    $("overlay-close").addEventListener("click", () => { closeMeasurement(); $("file").focus(); });
     $("cancel").addEventListener("click", () => { clearTimeout(state.timer); state.wanted = null; send({ type: "cancel", number: state.asked }); });
     $("theme").addEventListener("click", () => setTheme(vibroimpact.theme === "dark" ? "light" : "dark"));
     $("view").addEventListener("change", () => showView(Number($("view").value)));
@@ -375,7 +481,7 @@
   const setTheme = (theme) => {
     document.documentElement.dataset.theme = theme;
     vibroimpact.setTheme(theme);
-    for (const chart of charts.values()) chart.update();
+    for (const chart of [...charts.values(), ...overlays.values()]) chart.update();
     if (scene) scene.draw();
   };
 
@@ -389,6 +495,8 @@
     socket.addEventListener("close", (event) => {
       delete document.documentElement.dataset.connected;
       state.asked = 0;
+      state.sent = false;
+      state.files.clear();
       state.working = false;
       state.wanted = null;
       state.tables.clear();
@@ -403,5 +511,5 @@
   document.documentElement.dataset.theme = vibroimpact.theme;
   connectPage();
   connect();
-  vibroimpact.live = { state, charts, controls, get scene() { return scene; } };
+  vibroimpact.live = { state, charts, overlays, controls, get scene() { return scene; } };
 }

@@ -77,19 +77,34 @@ def overlays(
     drop = tunable.drop(values)
     contacts = []
     for impact, (time, force) in enumerate(seen.record.pieces[:_MOST_CONTACTS]):
-        simulated_time, simulated_force = _contact(drop, impact, float(seen.speeds[impact]))
-        # the centroid of a pulse is better determined than its ends
-        touch = _centroid(time, force) - _centroid(simulated_time, simulated_force)
-        contacts.append(
-            Overlay(
-                seen.labels[impact],
-                "force",
-                measured=(time - touch, force),
-                simulated=(simulated_time, simulated_force),
-                touch=touch,
-            )
-        )
+        simulated = _contact(drop, impact, float(seen.speeds[impact]))
+        contacts.append(contact_overlay(seen.labels[impact], (time, force), simulated))
     return tuple(contacts)
+
+
+def contact_overlay(
+    label: str, measured: tuple[Floats, Floats], simulated: tuple[Floats, Floats]
+) -> Overlay:
+    """Return a contact of a record over a simulated one, aligned by the centroids of the forces.
+
+    Parameters
+    ----------
+    label : str
+        Name of the contact.
+    measured, simulated : tuple of two arrays
+        Times [s], those of the record and those since the simulated first touch, and forces [N].
+
+    Examples
+    --------
+    >>> time = np.linspace(0.0, 1e-3, 11)
+    >>> pulse = np.sin(np.pi * time / 1e-3)
+    >>> round(contact_overlay("impact 1", (2.0 + time, pulse), (time, pulse)).touch, 9)
+    2.0
+    """
+    # the centroid of a pulse is better determined than its ends
+    touch = _centroid(*measured) - _centroid(*simulated)
+    time, force = measured
+    return Overlay(label, "force", (time - touch, force), simulated, touch)
 
 
 def _contact(drop: Problem, impact: int, speed: float) -> tuple[Floats, Floats]:
