@@ -23,10 +23,9 @@ from vibroimpact.cases.rigid.rigid_problem import (
     contact_laws_of,
     deforms,
     elastic_names,
-    impact_limit,
     rigid_problem,
-    run_duration,
 )
+from vibroimpact.cases.rigid.run_ends import ends_of_run, impact_limit
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, is_conservative
 from vibroimpact.contact.speed_function import held
@@ -58,8 +57,8 @@ def check_case(case: CaseTable) -> None:
         each other, or a sensor or a support lies outside the plate.
     """
     law = contact_laws_of(case)[-1]
-    # without a limit of impacts or time only losses in the contact end a run
-    if impact_limit(case) is None and run_duration(case) is None:
+    # without a rule only losses in the contact end a run
+    if not ends_of_run(case):
         _check_losses(case, law)
     _check_oblique(case, law)
     _check_liquid(case, law)

@@ -12,10 +12,10 @@ from vibroimpact.cases.rigid.rigid_problem import (
     contact_laws_of,
     deforms,
     elastic_names,
-    impact_limit,
     in_liquid,
     touch_speed,
 )
+from vibroimpact.cases.rigid.run_ends import impact_limit
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.history_grid import MOST_POINTS

@@ -25,12 +25,11 @@ from vibroimpact.cases.rigid.rigid_problem import (
     contact_laws_of,
     deforms,
     elastic_names,
-    impact_limit,
     mass_of_sphere,
     rigid_problem,
-    run_duration,
     touch_speed,
 )
+from vibroimpact.cases.rigid.run_ends import ends_of_run
 from vibroimpact.contact.law import CompliantLaw, unit_of
 from vibroimpact.dynamics.fluids.liquid import restitution_kept
 from vibroimpact.dynamics.sensors.instruments.registry import instruments
@@ -204,13 +203,8 @@ def _expected_rows(case: Case, expected: DropSummary) -> list[tuple[str, str]]:
 
 def _ends_of_a_run(case: Case) -> list[str]:
     """Return what ends a run of a case, whichever comes first."""
-    number = impact_limit(case)
-    duration = run_duration(case)
     ends = ["at rest" if case.drop.gravity else "when it flies off for good"]
-    if number:
-        ends.append("after 1 impact" if number == 1 else f"after {number} impacts")
-    if duration:
-        ends.append(f"at {duration:g} s")
+    ends += [end.words for end in ends_of_run(case)]
     if is_oblique(case) and case.plate.size:
         ends.append("when it falls off the edge of the plate")
     return ends

@@ -1,4 +1,4 @@
-"""Contact laws and stop rule of a case, and its problem with rigid bodies."""
+"""Contact laws of a case, and its problem with rigid bodies."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from vibroimpact.bodies.rigid_bodies import rigid_plate
 from vibroimpact.cases.fields.section import derived
 from vibroimpact.cases.rigid.oblique import normal_motion_of, oblique_of
 from vibroimpact.cases.rigid.pair import ball_of, contact_pair, is_free_sphere, sphere_density
-from vibroimpact.cases.rigid.plate_motion import motion_length, motion_of
+from vibroimpact.cases.rigid.plate_motion import motion_of
+from vibroimpact.cases.rigid.run_ends import stated_ends
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.registry import find_contact_law
 from vibroimpact.contact.speed_function import BySpeed, SpeedFunction, SpeedTable, held
@@ -114,31 +115,6 @@ def in_liquid(case: CaseTable, law: ContactLaw) -> ContactLaw:
     )
 
 
-def impact_limit(case: CaseTable) -> int | None:
-    """Return the number of impacts after which a run stops.
-
-    None if it continues to rest or to a time.
-    """
-    if case.run.impacts == "all":
-        return None
-    if case.run.impacts is not None:
-        return case.run.impacts
-    if run_duration(case) is not None:  # which ends the run
-        return None
-    return Problem.impacts
-
-
-def run_duration(case: CaseTable) -> float | None:
-    """Return the time at which a run stops [s]; None if there is none.
-
-    It is its duration, or the end of a tabulated motion of the plate.
-    """
-    length = motion_length(case)
-    if np.isinf(length):
-        return case.run.duration
-    return min(case.run.duration or length, length)
-
-
 def elastic_names(case: CaseTable) -> list[Literal["sphere", "plate"]]:
     """Return the names of the elastic bodies of a case."""
     names: tuple[Literal["sphere", "plate"], ...] = ("sphere", "plate")
@@ -172,8 +148,7 @@ def rigid_problem(case: CaseTable) -> Problem:
         air=_air_of(case),
         liquid=_liquid_of(case),
         sensors=tuple(sensor.sensor() for sensor in case.sensors),
-        impacts=impact_limit(case),
-        duration=run_duration(case),
+        **stated_ends(case),
         rest_speed=case.run.rest_speed,
         same_spot=case.drop.same_spot,
         tolerance=case.run.tolerance,

@@ -92,19 +92,11 @@ RELEASE_X, RELEASE_Y = range(COLUMNS + 17, OBLIQUE_COLUMNS)
 AT_START, IN_FLIGHT, AT_TOUCH = -3, -2, -1
 """Phases of the run of a drop; one that has ended has the number of its ending."""
 
-(
-    END_BY_IMPACTS,
-    END_BY_DURATION,
-    END_BY_REST_SPEED,
-    END_CAPTURED,
-    END_STUCK,
-    END_LEFT,
-    END_AT_LIMIT,
-    END_FAILED,
-    END_RIDING,
-    END_BESIDE,
-) = range(10)
-"""How a run ends: in the order of `Outcome`, whose codes they are."""
+END_BY_DURATION, END_BY_REST_SPEED, END_CAPTURED, END_STUCK, END_LEFT = range(1, 6)
+END_FAILED, END_RIDING = 7, 8
+"""Endings that the core decides, by the codes that they have in `Outcome`; those of stop rules come
+with these.
+"""
 
 
 class StopRules(NamedTuple):

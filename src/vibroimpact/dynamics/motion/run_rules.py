@@ -7,19 +7,18 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import law_addresses
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
-from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core import stop_rules
 from vibroimpact.dynamics.core.drop_records import StopRules
 from vibroimpact.dynamics.core.drops import LEAST_REST_SPEED, default_rest_speed
 from vibroimpact.dynamics.motion.flight import Flight
 from vibroimpact.dynamics.motion.law_coefficients import coefficients_of
-from vibroimpact.dynamics.statement.outcome import OUTCOMES
+from vibroimpact.dynamics.statement.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.statement.problem import MOST_IMPACTS, Problem
 
 _APART = 4e-15  # of the amplitude of a shaken plate: the rounding error of its place
 
 IS_AT_REST = np.array([outcome.at_rest for outcome in OUTCOMES])
-"""Which endings of `core.drop_records` are rest, by their numbers."""
+"""Which outcomes are rest, by their codes."""
 
 
 def laws_of(problem: Problem) -> list[ContactLaw]:
@@ -35,16 +34,17 @@ def laws_of(problem: Problem) -> list[ContactLaw]:
 
 def stop_rules_of(problem: Problem) -> StopRules:
     """Return the rules that can end a run; of two that end it at one time the first counts."""
-    rules: list[tuple[int, float, int]] = []
+    rules: list[tuple[int, float, Outcome]] = []
     if problem.duration is not None:
-        rules.append((stop_rules.AT_TIME, problem.duration, records.END_BY_DURATION))
+        rules.append((stop_rules.AT_TIME, problem.duration, Outcome.DURATION))
     if problem.impacts is not None:
-        rules.append((stop_rules.AFTER_IMPACTS, problem.impacts, records.END_BY_IMPACTS))
+        rules.append((stop_rules.AFTER_IMPACTS, problem.impacts, Outcome.IMPACTS))
     else:
-        rules.append((stop_rules.AFTER_IMPACTS, MOST_IMPACTS, records.END_AT_LIMIT))
+        rules.append((stop_rules.AFTER_IMPACTS, MOST_IMPACTS, Outcome.LIMIT))
     if problem.oblique is not None:
-        rules.append((stop_rules.BESIDE_PLATE, 0.0, records.END_BESIDE))
-    kinds, values, endings = zip(*rules, strict=True)
+        rules.append((stop_rules.BESIDE_PLATE, 0.0, Outcome.FELL))
+    kinds, values, outcomes = zip(*rules, strict=True)
+    endings = [outcome.code for outcome in outcomes]
     return StopRules(np.array(kinds), np.array(values, dtype=float), np.array(endings))
 
 

@@ -8,7 +8,7 @@ from enum import Enum
 class Outcome(Enum):
     """Reason why the run of a drop ended; the value is the name of the rule.
 
-    Files store its number: a further one is the last, here and in `core.drop_records`.
+    Files store its number: a further one is the last.
 
     Examples
     --------

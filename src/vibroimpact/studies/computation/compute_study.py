@@ -15,7 +15,7 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.cases.elastic.coupling import carried_modes
-from vibroimpact.cases.rigid.rigid_problem import impact_limit
+from vibroimpact.cases.rigid.run_ends import impact_limit
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.files.check_sums import sealed
 from vibroimpact.files.result_folder import SUMMARY, new_folder

@@ -12,7 +12,8 @@ from typing import Any
 
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.quantities import Quantity
-from vibroimpact.cases.rigid.rigid_problem import deforms, impact_limit
+from vibroimpact.cases.rigid.rigid_problem import deforms
+from vibroimpact.cases.rigid.run_ends import impact_limit
 from vibroimpact.dynamics.motion.columns import ALL_IMPACT_COLUMNS, IMPACT_COLUMNS, meanings
 from vibroimpact.errors import InputError
 from vibroimpact.meshes.mesh_digest import mesh_digest
