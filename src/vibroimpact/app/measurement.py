@@ -171,7 +171,10 @@ def _none_matches(records: Sequence[Record], sensors: Sequence[Sensor]) -> Input
             f'its unit, such as "{first.name} [{first.unit}]"'
         )
     else:
-        words = f"it has {has}, and the case has no sensors; add the sensor to the case"
+        words = (
+            f"it has {has}, and the case has no sensors; add the sensor to the case, on an "
+            "elastic plate"
+        )
     error = InputError(f"{words}, or open a record of the contact force in N")
     return with_path(records[0].source, error)
 

@@ -193,8 +193,7 @@
     controls.showFaults(lines);
     $("faults").hidden = !lines.length;
     $("faults").replaceChildren(...lines.map((line) => make("p", { text: line })));
-    // a file that is not understood leaves controls and results as they are
-    const isOlder = lines.length > 0 && Boolean(state.last) && controls.table !== state.table;
+    const isOlder = lines.length > 0 && Boolean(state.last);
     $("older").hidden = !isOlder;
     $("results").classList.toggle("older", isOlder);
   };
@@ -308,11 +307,15 @@
     const one = known.get(chart.name), section = one.element.parentElement;
     section.querySelector("h2").textContent = chart.title;
     one.element.setAttribute("aria-label", `${chart.title}. ${chart.caption}`);
-    one.update({ chart, ghost, view: viewOf(chart) });
+    one.update({ chart, ghost, view: viewOf(known, chart) });
     headline(one);
     return section;
   };
-  const viewOf = (chart) => (state.view < 0 || state.view >= chart.views.length ? null : state.view);
+  // Contacts of a measurement are too short to be seen in a whole run: there the first one is shown.
+  const viewOf = (known, chart) => {
+    const view = known === overlays ? Math.max(state.view, 0) : state.view;
+    return view < 0 || view >= chart.views.length ? null : view;
+  };
   const endChart = (known, name) => {
     const chart = known.get(name);
     Plotly.purge(chart.element);
@@ -341,7 +344,7 @@
   const showView = (number) => {
     state.view = number;
     showPlace();
-    for (const one of [...charts.values(), ...overlays.values()]) { one.update({ view: viewOf(one.chart), ranges: {} }); headline(one); }
+    for (const known of [charts, overlays]) for (const one of known.values()) { one.update({ view: viewOf(known, one.chart), ranges: {} }); headline(one); }
   };
 
   const showScene = (given, waiting) => {
@@ -420,12 +423,19 @@
 
   // ---- the controls of the page -------------------------------------------------------------------------------
 
+  // What is shown is not older than what is asked for: a file that is not read changes nothing.
+  const refuse = (lines) => {
+    showFaults(lines);
+    $("older").hidden = true;
+    $("results").classList.remove("older");
+  };
+
   const openFile = async (file) => {
     if (!file) return;
     const name = file.name.toLowerCase();
     if (state.offer?.endings.some((ending) => name.endsWith(ending))) { openMeasurement(file); return; }
     if (state.offer && !name.endsWith(".toml")) {
-      showFaults([`${file.name}: the page reads the TOML file of a case, and of a measurement files ending in ${state.offer.endings.join(", ")}; convert it, or use: vibroimpact correlate`]);
+      refuse([`${file.name}: the page reads the TOML file of a case, and of a measurement files ending in ${state.offer.endings.join(", ")}; convert it, or use: vibroimpact correlate`]);
       return;
     }
     if (file.size > 150000) { showFaults([`${file.name}: the file has ${file.size} bytes, and a case is a page of text`]); return; }
@@ -443,7 +453,7 @@
       event.preventDefault();
       $("drop").hidden = true;
       const files = event.dataTransfer?.files || [];
-      if (files.length > 1) showFaults([`${files.length} files were dropped; the page opens one at a time`]); else openFile(files[0]);
+      if (files.length > 1) refuse([`${files.length} files were dropped; the page opens one at a time`]); else openFile(files[0]);
     });
     $("hold").addEventListener("click", () => {
       state.held = state.held ? null : state.last;
