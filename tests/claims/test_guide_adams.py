@@ -181,7 +181,7 @@ def test_what_the_commands_print(
 
     monkeypatch.chdir(tmp_path)
     Path("ball.toml").write_text(blocks(PAGE, "toml")[0], encoding="utf-8")
-    ball, rocks = blocks(PAGE, "text")
+    ball, rocks, nylon, mild = blocks(PAGE, "text")
     for lines in (
         printed("calibrate", "ball.toml", "-o", "ball"),
         printed("export", "ball", "--to", "adams", "-o", "ball-adams"),
@@ -189,3 +189,34 @@ def test_what_the_commands_print(
         assert [line for line in ball.splitlines() if line.rstrip() not in lines] == []
     lines = printed("calibrate", "paper:calibration", "-o", "rock")
     assert [line for line in rocks.splitlines() if line.rstrip() not in lines] == []
+    for text in blocks(PAGE, "toml")[1:]:
+        Path(text.splitlines()[0].removeprefix("# ")).write_text(text, encoding="utf-8")
+    printed("run", "nylon.toml", "-o", "nylon")
+    printed("run", "mild.toml", "-o", "mild")
+    match = ("--to", "adams", "--match")
+    for lines, table in (
+        (printed("export", "nylon", *match, "rebound", "-o", "rigid"), nylon),
+        (printed("export", "mild", *match, "rebound", "-o", "mild-adams"), mild),
+    ):
+        assert [line for line in table.splitlines() if line.rstrip() not in lines] == []
+    (row,) = (
+        line
+        for line in printed("export", "nylon", *match, "contact", "-o", "flexible")
+        if line.startswith(" every impact")
+    )
+    says(PAGE, "and the second a damping of {} N s/mm", float(row.split()[4]))
+    estimate = vi.load_result("mild").impacts
+    says(
+        PAGE,
+        "The law gives a restitution of {} at {} m/s",
+        float(estimate["restitution_achieved"][0]),
+        float(estimate["approach_speed_m_s"][0]),
+    )
+
+
+def test_the_hardness_of_structural_steel() -> None:
+    says(
+        PAGE,
+        "of a hardness of {} HV",
+        2.8 * float(vi.find_material("steel").yield_strength or 0.0) / 9.80665e6,
+    )

@@ -37,6 +37,15 @@ def export(
             "DIR-FORMAT.",
         ),
     ] = None,
+    match: Annotated[
+        str | None,
+        typer.Option(
+            "--match",
+            metavar="REBOUND",
+            help="Write Adams' IMPACT in place of the contact law: rebound, with the rebound of "
+            "the run, elastic bodies included, or contact, with that of its contact law alone.",
+        ),
+    ] = None,
     force: Annotated[
         bool, typer.Option("--force", help="Replace files of the same names.")
     ] = False,
@@ -45,18 +54,18 @@ def export(
 ) -> None:
     """Export a result to another program, or list the formats.
 
-    The output states what the format can't represent, and what the writer was tested against.
+    The output states what the format can't represent, and what the writer was tested against. For
+    Adams it has the numbers of the dialog of a contact.
     """
     from vibroimpact.exporting.document import export_document, formats_document
     from vibroimpact.exporting.export_format import find_export_format
-    from vibroimpact.exporting.export_result import default_output, save_export
-    from vibroimpact.exporting.load_drop import load_drop
+    from vibroimpact.exporting.export_result import default_output, drop_to_export, save_export
     from vibroimpact.exporting.text import export_summary, format_table
 
-    if formats and (to is not None or output is not None or force):
-        raise InputError("--formats lists the formats, and takes no --to, -o or --force")
+    if formats and (to is not None or output is not None or match is not None or force):
+        raise InputError("--formats lists the formats, and takes no --to, -o, --match or --force")
     if formats or to is None:
-        if output is not None or force:
+        if output is not None or match is not None or force:
             raise InputError("name the format: vibroimpact export DIR --to FORMAT")
         show(formats_document, format_table, as_json=as_json)
         return
@@ -65,7 +74,7 @@ def export(
         raise InputError(
             f"name the folder that is to be exported: vibroimpact export DIR --to {to}"
         )
-    drop = export_format.prepare(load_drop(directory))
+    drop = drop_to_export(directory, export_format, match)
     target = output or default_output(directory, to)
     files = save_export(drop, export_format, target, force=force)
     show(

@@ -11,7 +11,13 @@ from vibroimpact.calibration.contact_law.adams_dialog import dialog_rows
 from vibroimpact.exporting.adams_contact import AdamsContact, Names, adams_contact
 from vibroimpact.exporting.adams_motion import AdamsMotion, adams_friction, adams_motion
 from vibroimpact.exporting.adams_text import LINE
-from vibroimpact.exporting.contact_parameters import first_contact, laws_of_impacts, shared_notes
+from vibroimpact.exporting.contact_parameters import (
+    first_contact,
+    is_lossless,
+    laws_of_impacts,
+    shared_notes,
+    unknown_damping_note,
+)
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.program_friction import friction_notes
 from vibroimpact.files.plain_names import identifier, plain_words
@@ -147,7 +153,10 @@ def adams_model(drop: Drop) -> AdamsModel:
 
 def adams_notes(drop: Drop) -> list[str]:
     """Return the limitations of the model."""
-    return [*shared_notes(drop), *friction_notes(drop, "Adams", adams_friction(drop))]
+    notes = [*shared_notes(drop), *friction_notes(drop, "Adams", adams_friction(drop))]
+    if not drop.notes and is_lossless(drop.impacts):
+        notes.append(unknown_damping_note(drop.laws[0]))
+    return notes
 
 
 def adams_dialog(drop: Drop) -> list[dict[str, Any]]:

@@ -25,6 +25,9 @@ from vibroimpact.errors import InputError
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.ranges import Range
 
+_LOSSLESS = 1e-6
+"""Energy that rounding takes, as a difference of the restitution from 1."""
+
 _SHOWN = 5
 """Impacts whose restitution a note gives."""
 
@@ -100,6 +103,25 @@ def power_law_spring(law: ContactLaw, program: str) -> tuple[float, float]:
     >>> power_law_spring(Hertz(stiffness=5e8), "LAMMPS")
     (500000000.0, 1.5)
     """
+    spring = spring_of(law)
+    if spring is not None:
+        return spring
+    raise InputError(
+        f"{law.name} can't be written for {program}: its spring is not K delta^n; take a "
+        "law that has one, "
+        'such as tsuji, with the restitution that "vibroimpact calibrate" finds'
+    )
+
+
+def spring_of(law: ContactLaw) -> tuple[float, float] | None:
+    """Return stiffness [N/m^n] and exponent n of the elastic part K delta^n of a law; None if it
+    has none.
+
+    Examples
+    --------
+    >>> from vibroimpact.contact.laws.newton import Newton
+    >>> spring_of(Newton(restitution=0.7))
+    """
     if isinstance(law, PowerLaw):
         return float(law.stiffness), float(law.exponent)
     if isinstance(law, SphereLaw):
@@ -108,11 +130,7 @@ def power_law_spring(law: ContactLaw, program: str) -> tuple[float, float]:
         return float(law.stiffness), 1.0
     if isinstance(law, AdamsPoisson):
         return float(law.penalty), 1.0
-    raise InputError(
-        f"{law.name} can't be written for {program}: its spring is not K delta^n; take a "
-        "law that has one, "
-        'such as tsuji, with the restitution that "vibroimpact calibrate" finds'
-    )
+    return None
 
 
 def linear_or_hertzian(drop: Drop, program: str) -> tuple[float, float]:
@@ -171,7 +189,7 @@ def shared_notes(drop: Drop) -> list[str]:
     """Return the limitations shared by all exports to rigid-body programs, among them a
     function used beyond its fitted speeds.
     """
-    notes = _rigid_notes(drop)
+    notes = [*drop.notes, *_rigid_notes(drop)]
     if drop.function is not None and drop.function[1].degree:
         name, function = drop.function
         speeds = function.beyond(np.array(approach_speeds(drop)))
@@ -219,8 +237,8 @@ def _rigid_notes(drop: Drop) -> list[str]:
         remedy.append("no contact.finite_sphere")
     if not drop.original_impacts:
         return lost
-    written = _restitutions(drop.impacts)
-    original = _restitutions(drop.original_impacts)
+    written = restitution_words(drop.impacts)
+    original = restitution_words(drop.original_impacts)
     return [
         *lost,
         "The exported drop therefore differs from the one that was run: it is the same case "
@@ -247,13 +265,21 @@ def _remedy(drop: Drop, changes: list[str]) -> str:
     if first:
         last = f"{', '.join(first)} and {last}"
     return (
-        "For rigid bodies that rebound as in the run, calibrate the case with "
+        "For rigid bodies that rebound as in the run, export it with --match rebound, which "
+        "takes Adams' IMPACT; or, to keep the law, calibrate the case with "
         f"{last} to the run's impacts.csv as [calibrate] "
         "target, and export the calibration."
     )
 
 
-def _restitutions(impacts: Mapping[str, Floats]) -> str:
+def restitution_words(impacts: Mapping[str, Floats]) -> str:
+    """Return the restitutions of the first impacts of a table, in words.
+
+    Examples
+    --------
+    >>> restitution_words({"restitution_achieved": np.array([0.7, 0.71])})
+    '0.700, 0.710'
+    """
     values = impacts["restitution_achieved"].tolist()
     if not values:
         return "none"
@@ -261,6 +287,34 @@ def _restitutions(impacts: Mapping[str, Floats]) -> str:
     if len(values) > _SHOWN:
         shown.append("...")
     return ", ".join(shown)
+
+
+def is_lossless(impacts: Mapping[str, Floats]) -> bool:
+    """Return whether no impact of a table between rigid bodies takes energy.
+
+    Examples
+    --------
+    >>> is_lossless({"restitution_achieved": np.array([1.0, 0.9])})
+    False
+    """
+    return bool(np.all(impacts["restitution_achieved"] > 1.0 - _LOSSLESS))
+
+
+def unknown_damping_note(law: ContactLaw) -> str:
+    """Return the sentence on a contact whose law takes no energy, and what tells its damping.
+
+    Examples
+    --------
+    >>> from vibroimpact.contact.laws.hertz import Hertz
+    >>> unknown_damping_note(Hertz(stiffness=5e8))[:52]
+    'The law of this contact, hertz, takes no energy here'
+    """
+    return (
+        f"The law of this contact, {law.name}, takes no energy here, so that nothing is known of "
+        "the contact's own damping. A measured rebound tells it (vibroimpact calibrate). Without "
+        "one, give the materials their yield_strength, of a metal its hardness over 2.8, run "
+        "with contact.law = meyer, and export with --match rebound."
+    )
 
 
 def clipped_dashpot(

@@ -91,6 +91,8 @@ class Drop:
         sphere's centre [m] (frames,). Empty if there is none.
     doubts : tuple of str
         Doubts about the result, as the run states them.
+    notes : tuple of str
+        What its contact law reproduces, where it is not that of the run.
     """
 
     name: str
@@ -121,6 +123,7 @@ class Drop:
     signals: Mapping[str, Signal] = field(default_factory=dict, repr=False)
     surface: Mapping[str, Floats] = field(default_factory=dict, repr=False)
     doubts: tuple[str, ...] = field(default=(), repr=False)
+    notes: tuple[str, ...] = field(default=(), repr=False)
 
     @property
     def ball(self) -> Body:

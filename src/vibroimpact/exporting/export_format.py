@@ -10,6 +10,7 @@ from functools import cache
 from typing import Any
 
 from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.rigid_drop import as_rigid
 from vibroimpact.files.plain_names import identifier
 from vibroimpact.registry import find_named, modules_in
 
@@ -49,6 +50,11 @@ class ExportFormat:
     notes: Callable[[Drop], list[str]] = lambda drop: []
     dialog: Callable[[Drop], list[dict[str, Any]]] = lambda drop: []
     prepare: Callable[[Drop], Drop] = lambda drop: drop
+
+    @property
+    def simulates(self) -> bool:
+        """Whether a program simulates the drop from the files, between rigid bodies."""
+        return self.prepare is as_rigid
 
 
 @cache

@@ -10,8 +10,12 @@ from pathlib import Path
 
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.drop import Drop
-from vibroimpact.exporting.export_format import ExportFormat, find_export_format
-from vibroimpact.exporting.load_drop import load_drop
+from vibroimpact.exporting.export_format import (
+    ExportFormat,
+    export_formats,
+    find_export_format,
+)
+from vibroimpact.exporting.load_drop import load_drop, load_matched_drop
 from vibroimpact.files.atomic_write import atomic_folder, write_file, write_into
 from vibroimpact.files.new_folders import made_folder
 from vibroimpact.files.recover import recover
@@ -25,6 +29,7 @@ def export_result(
     output: str | PathLike[str] | None = None,
     *,
     force: bool = False,
+    match: str | None = None,
 ) -> list[Path]:
     """Export a result folder or a calibration folder to a format of another program.
 
@@ -39,6 +44,9 @@ def export_result(
         If the format writes a single file and the name has a suffix, it is the name of that file.
     force : bool, default False
         Replace existing files of the same names. Other files in the folder are left unchanged.
+    match : str, optional
+        Write Adams' IMPACT in place of the contact law of a run: "rebound", with the rebound of
+        the run, or "contact", with that of its contact law alone.
 
     Returns
     -------
@@ -61,10 +69,31 @@ def export_result(
     ['impacts.csv', 'history.csv']
     """
     export_format = find_export_format(format)
-    drop = export_format.prepare(load_drop(directory))
+    drop = drop_to_export(directory, export_format, match)
     if output is None:
         output = default_output(directory, format)
     return save_export(drop, export_format, Path(output), force=force)
+
+
+def drop_to_export(
+    directory: str | PathLike[str], format: ExportFormat, match: str | None = None
+) -> Drop:
+    """Return the drop of a folder as a format takes it.
+
+    Raises
+    ------
+    InputError
+        As `export_result`, or if the format takes data, which have no contact law to be matched.
+    """
+    if match is None:
+        return format.prepare(load_drop(directory))
+    if not format.simulates:
+        programs = [name for name, other in export_formats().items() if other.simulates]
+        raise InputError(
+            f"--match is for programs that simulate the drop ({', '.join(programs)}); "
+            f"{format.name} holds the data of the run"
+        )
+    return format.prepare(load_matched_drop(directory, match))
 
 
 def default_output(directory: str | PathLike[str], format: str) -> Path:

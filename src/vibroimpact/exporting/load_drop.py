@@ -22,6 +22,7 @@ from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import laws_at_impacts
 from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.matched_rebound import matched_drop
 from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, check_file, read_sealed
 from vibroimpact.files.hdf5 import short_reason
 from vibroimpact.files.recover import recover
@@ -48,6 +49,39 @@ def load_drop(directory: str | PathLike[str]) -> Drop:
     recover(folder)
     if (folder / CALIBRATION).is_file():
         return _of_calibration(folder)
+    drop, _ = _drop_and_case(folder)
+    return drop
+
+
+def load_matched_drop(directory: str | PathLike[str], target: str) -> Drop:
+    """Load the drop of a result folder, with Adams' IMPACT matched to a rebound.
+
+    Parameters
+    ----------
+    directory : path
+        A result folder.
+    target : str
+        Which rebound, a key of `MATCHES`: "rebound", of the run, or "contact", of its contact
+        law alone.
+
+    Raises
+    ------
+    InputError
+        As `load_drop` and `matched_drop`, or if it is a calibration folder.
+    """
+    folder = Path(directory)
+    recover(folder)
+    if (folder / CALIBRATION).is_file():
+        raise InputError(
+            f"{folder}: a calibration is matched to its target already; leave --match out, or "
+            "give the folder of a run"
+        )
+    drop, case = _drop_and_case(folder)
+    return matched_drop(drop, case, target)
+
+
+def _drop_and_case(folder: Path) -> tuple[Drop, Case]:
+    """Return the drop of a result folder, and its case."""
     result = load_result(folder)
     if not result.case:
         raise InputError(
@@ -55,7 +89,8 @@ def load_drop(directory: str | PathLike[str]) -> Drop:
             "an export needs a case"
         )
     try:
-        return drop_of_result(result, case_of(result.case))
+        case = case_of(result.case)
+        return drop_of_result(result, case), case
     except InputError as error:
         raise InputError(f"{folder / 'case.toml'}: {error}") from None
 

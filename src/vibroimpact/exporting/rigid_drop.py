@@ -36,20 +36,7 @@ def as_rigid(drop: Drop) -> Drop:
     InputError
         If the sphere flies through air or touches in a liquid, or the plate is moved.
     """
-    if drop.motion is not None:
-        raise InputError(
-            "programs get a plate at rest; formats of data hold a drop on one that moves",
-            "plate.motion",
-        )
-    if drop.in_air:
-        raise InputError(
-            "programs get drops in a vacuum; formats of data hold one in air", "drop.air"
-        )
-    if drop.in_liquid:
-        raise InputError(
-            "programs get contacts without a liquid; formats of data hold one in it",
-            "contact.liquid",
-        )
+    check_in_vacuum_at_rest(drop)
     if drop.rigid is None:
         return drop
     if drop.function is None:
@@ -77,6 +64,30 @@ def as_rigid(drop: Drop) -> Drop:
         signals={},
         surface={},
     )
+
+
+def check_in_vacuum_at_rest(drop: Drop) -> None:
+    """Check that a drop is in a vacuum, on a plate at rest.
+
+    Raises
+    ------
+    InputError
+        If the sphere flies through air or touches in a liquid, or the plate is moved.
+    """
+    if drop.motion is not None:
+        raise InputError(
+            "programs get a plate at rest; formats of data hold a drop on one that moves",
+            "plate.motion",
+        )
+    if drop.in_air:
+        raise InputError(
+            "programs get drops in a vacuum; formats of data hold one in air", "drop.air"
+        )
+    if drop.in_liquid:
+        raise InputError(
+            "programs get contacts without a liquid; formats of data hold one in it",
+            "contact.liquid",
+        )
 
 
 def _by_function(problem: Problem, name: str, function: SpeedFunction) -> Response:
