@@ -74,6 +74,10 @@ class SlowLawWarning(UserWarning):
     """A contact law could not be compiled; its results are the same, and take longer."""
 
 
+class LeftOutWarning(UserWarning):
+    """Keys of a case were left out, which do not apply with others that were changed."""
+
+
 class InputError(VibroimpactError, ValueError):
     """An invalid case, argument or file.
 

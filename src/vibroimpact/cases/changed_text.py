@@ -15,6 +15,7 @@ import tomli_w
 
 from vibroimpact.cases.reader import parse_case
 from vibroimpact.cases.sections.keys import with_values
+from vibroimpact.cases.sections.left_out import without_inapplicable
 
 _HEADER = re.compile(r"^\s*\[")
 _BARE = re.compile(r"[\w-]+", re.ASCII)
@@ -23,7 +24,8 @@ _BARE = re.compile(r"[\w-]+", re.ASCII)
 def changed_text(text: str, changes: Mapping[str, Any]) -> str:
     r"""Return the text of a case with other values.
 
-    Where a value stands in a way that is not `key = value` below the header of its section, the
+    Keys that do not apply after the changes are left out, as `load_case` leaves them out. Where a
+    value stands in a way that is not `key = value` below the header of its section, the
     case is written anew, without comments.
 
     Parameters
@@ -53,8 +55,12 @@ def changed_text(text: str, changes: Mapping[str, Any]) -> str:
     speed = 2.0
     """
     table = parse_case(text)
-    changed = with_values(table, changes, "set")
+    kept, dropped = without_inapplicable(table, changes)
+    changed = with_values(kept, changes, "set")
     lines = text.split("\n")
+    for dotted_key in dropped:
+        section, _, key = dotted_key.rpartition(".")
+        _remove(lines, section, key)
     for name, value in changed.items():
         old_value = table.get(name)
         if isinstance(value, dict) and isinstance(old_value, dict | None):
@@ -73,20 +79,43 @@ def changed_text(text: str, changes: Mapping[str, Any]) -> str:
 def _write(lines: list[str], section: str, key: str, value: Any) -> None:
     """Write a value at a key of a section into the lines of a case, in place."""
     start = _section_start(lines, section)
-    end = start
-    while end < len(lines) and not _HEADER.match(lines[end]):
-        end += 1
+    end = _section_end(lines, start)
     new_line = f"{_key(key)} = {_inline(value)}"
-    assignment = re.compile(rf"^\s*{re.escape(_key(key))}\s*=")
-    for first in range(start, end):
-        if assignment.match(lines[first]):
-            last = _value_end(lines, first, end)
-            lines[first:last] = [new_line + _comment(lines[first])]
-            return
+    assignment = _assignment(lines, start, end, key)
+    if assignment is not None:
+        first, last = assignment
+        lines[first:last] = [new_line + _comment(lines[first])]
+        return
     # a new key is above the blank lines at the end of the section
     while end > start and not lines[end - 1].strip():
         end -= 1
     lines.insert(end, new_line)
+
+
+def _remove(lines: list[str], section: str, key: str) -> None:
+    """Remove a key of a section from the lines of a case, in place, if it is `key = value`."""
+    start = _section_start(lines, section)
+    assignment = _assignment(lines, start, _section_end(lines, start), key)
+    if assignment is not None:
+        first, last = assignment
+        del lines[first:last]
+
+
+def _assignment(lines: list[str], start: int, end: int, key: str) -> tuple[int, int] | None:
+    """Return the first line of a value, and the one after its last; None if it is not there."""
+    assignment = re.compile(rf"^\s*{re.escape(_key(key))}\s*=")
+    for first in range(start, end):
+        if assignment.match(lines[first]):
+            return first, _value_end(lines, first, end)
+    return None
+
+
+def _section_end(lines: list[str], start: int) -> int:
+    """Return the index of the line after a section that begins at one."""
+    end = start
+    while end < len(lines) and not _HEADER.match(lines[end]):
+        end += 1
+    return end
 
 
 def _section_start(lines: list[str], section: str) -> int:

@@ -19,6 +19,7 @@ from vibroimpact.cases.fields.fault_messages import fault_messages
 from vibroimpact.cases.fields.item_labels import path_in_words
 from vibroimpact.cases.fields.size_limits import MOST_BYTES, check_bounds, check_text
 from vibroimpact.cases.sections.keys import with_values
+from vibroimpact.cases.sections.left_out import applicable
 from vibroimpact.errors import InputError, choices
 from vibroimpact.files.reading import FileKind, read_text
 from vibroimpact.quoting import quoted, shortened
@@ -43,7 +44,9 @@ def load_case(source: str | PathLike[str], changes: Mapping[str, Any] | None = N
     source : path or str
         A TOML file, or "paper:NAME".
     changes : mapping, optional
-        Other values by dotted key, such as ``{"plate.size.thickness": "10 mm"}``.
+        Other values by dotted key, such as ``{"plate.size.thickness": "10 mm"}``. Keys of the file
+        that do not apply with another contact law, or with a body that becomes rigid, are left out,
+        with a `LeftOutWarning`.
 
     Raises
     ------
@@ -103,7 +106,7 @@ def load_table(
     table = _resolve_paths(parse_case(case_text(source)), Path(source).parent)
     if not changes:
         return table
-    table = with_values(table, changes, "set")
+    table = with_values(applicable(table, changes), changes, "set")
     check_bounds(table)
     # files in the changes are relative to the working directory
     return _resolve_paths(table, Path())

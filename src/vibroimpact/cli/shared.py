@@ -16,7 +16,13 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 from vibroimpact.cli.completion import complete_case, complete_change
-from vibroimpact.errors import ChartWarning, InputError, SlowLawWarning, lines_of
+from vibroimpact.errors import (
+    ChartWarning,
+    InputError,
+    LeftOutWarning,
+    SlowLawWarning,
+    lines_of,
+)
 from vibroimpact.quoting import visible
 
 if TYPE_CHECKING:
@@ -358,17 +364,23 @@ def note(text: str) -> None:
 def note_warnings() -> None:
     """Show the warnings of the package as notes."""
     show_as_python_does = warnings.showwarning
+    left_out: set[str] = set()  # a command may read its case more than once
 
     def show_warning(
         message: Warning | str, category: type[Warning], *location: Any, **options: Any
     ) -> None:
-        if issubclass(category, ChartWarning | SlowLawWarning):
+        if issubclass(category, LeftOutWarning) and str(message) in left_out:
+            return
+        if issubclass(category, LeftOutWarning):
+            left_out.add(str(message))
+        if issubclass(category, ChartWarning | LeftOutWarning | SlowLawWarning):
             note(str(message))
         else:
             show_as_python_does(message, category, *location, **options)
 
     warnings.simplefilter("always", ChartWarning)
     warnings.simplefilter("always", SlowLawWarning)
+    warnings.simplefilter("always", LeftOutWarning)
     warnings.showwarning = show_warning
 
 

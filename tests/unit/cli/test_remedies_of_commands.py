@@ -55,6 +55,6 @@ def test_a_folder_in_the_way_is_not_replaced(run: object, tmp_path: Path) -> Non
 
 def test_the_list_of_formats_takes_no_options_of_an_export(run: object) -> None:
     assert callable(run)
-    assert "--formats lists the formats, and takes no --to, -o or --force" in run(
+    assert "--formats lists the formats, and takes no --to, -o, --match or --force" in run(
         "export", "--formats", "--force"
     )

@@ -14,6 +14,7 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.rigid.rigid_problem import deforms
 from vibroimpact.cases.rigid.run_ends import impact_limit
+from vibroimpact.cases.sections.left_out import applicable
 from vibroimpact.dynamics.motion.columns import ALL_IMPACT_COLUMNS, IMPACT_COLUMNS, meanings
 from vibroimpact.errors import InputError
 from vibroimpact.meshes.mesh_digest import mesh_digest
@@ -135,7 +136,9 @@ class Sweep:
             raise InputError(
                 f"there is no drop {drop}; the study has {self.size:,}, counted from 0"
             )
-        return self.case_at({**self.values_of(drop), **(changes or {})})
+        changes = changes or {}
+        table = applicable(self.table, changes)
+        return case_at(table, {**self.values_of(drop), **changes})
 
     @property
     def window(self) -> Window | None:
