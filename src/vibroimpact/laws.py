@@ -24,12 +24,14 @@ from vibroimpact.registry import class_named
 
 if TYPE_CHECKING:
     from vibroimpact.law_comparison.comparison import Comparison, compare_laws
+    from vibroimpact.law_comparison.ranking import Ranking, rank_laws
     from vibroimpact.law_sheets.curves import law_chart
 
 __all__ = [
     "Comparison",
     "ContactLaw",
     "QuasiStatic",
+    "Ranking",
     "SpeedFunction",
     "SpeedTable",
     "achieved_restitution",
@@ -39,11 +41,14 @@ __all__ = [
     "integrated_restitution",
     "law_achieving",
     "law_chart",
+    "rank_laws",
 ]
 
 _WITH_CASES = {
     "Comparison": "vibroimpact.law_comparison.comparison",
+    "Ranking": "vibroimpact.law_comparison.ranking",
     "compare_laws": "vibroimpact.law_comparison.comparison",
+    "rank_laws": "vibroimpact.law_comparison.ranking",
     "law_chart": "vibroimpact.law_sheets.curves",
 }
 """Names whose modules load the schema of cases, which a law by its name does not need."""

@@ -40,4 +40,6 @@ from vibroimpact.dynamics.restitution import integrated_restitution as integrate
 from vibroimpact.dynamics.restitution import law_achieving as law_achieving
 from vibroimpact.law_comparison.comparison import Comparison as Comparison
 from vibroimpact.law_comparison.comparison import compare_laws as compare_laws
+from vibroimpact.law_comparison.ranking import Ranking as Ranking
+from vibroimpact.law_comparison.ranking import rank_laws as rank_laws
 from vibroimpact.law_sheets.curves import law_chart as law_chart
