@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,12 @@ from stated_numbers import says
 from support import blocks, example, names_of_page
 from vibroimpact.cases.validity.relaxation import LIMITS as RELAXATION
 from vibroimpact.cases.validity.strength import demands
+from vibroimpact.cli import main
+from vibroimpact.contact.kelvin_voigt import (
+    damping_ratio_from_restitution,
+    restitution_from_damping_ratio,
+)
+from vibroimpact.exporting.formats.yade import _Clipped
 
 PAGE = "docs/guides/restitution-in-dem.md"
 ASKED = (0.9, 0.7, 0.5)
@@ -125,3 +132,36 @@ def test_exported_line(tmp_path: Path) -> None:
     (script,) = vi.exporting.export_result(tmp_path / "run", "lammps", tmp_path / "rock.in")
     shown = " ".join(blocks(PAGE, "text")[0].removesuffix("...\n").split())
     assert shown in " ".join(script.read_text(encoding="utf-8").split())
+
+
+def test_what_is_typed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The tables of the page, line by line."""
+
+    def printed(*words: str) -> list[str]:
+        monkeypatch.setattr(sys, "argv", ["vibroimpact", *words])
+        with pytest.raises(SystemExit) as left:
+            main()
+        assert not left.value.code
+        return [line.rstrip() for line in capsys.readouterr().out.splitlines()]
+
+    monkeypatch.chdir(tmp_path)
+    Path("grain.toml").write_text(blocks(PAGE, "toml")[0], encoding="utf-8")
+    printed("run", "grain.toml", "-o", "grain")
+    lines = printed("export", "grain", "--to", "dem", "-o", "grain-dem")
+    _, typed, softened = blocks(PAGE, "text")
+    shown = [*typed.splitlines(), *softened.splitlines()]
+    assert [line for line in shown if line.rstrip() not in lines] == []
+
+
+def test_restitutions_of_programs() -> None:
+    half = float(damping_ratio_from_restitution(0.5))
+    mfix = float(restitution_from_damping_ratio(2.0 / np.sqrt(5.0) * half))
+    says(PAGE, "2/√5 = {} of that, so that 0.5 typed gives {}", 2.0 / np.sqrt(5.0), mfix)
+    clipped = _Clipped(stiffness=1e8, restitution=0.5, effective_mass=0.1)
+    says(
+        PAGE,
+        "never pulls either, and then rebounds with {} where 0.5 is typed",
+        float(vi.laws.achieved_restitution(clipped, mass=0.1, speed=1.0)),
+    )

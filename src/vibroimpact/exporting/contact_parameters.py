@@ -172,7 +172,15 @@ def first_contact(law: ContactLaw, drop: Drop) -> tuple[float, float]:
     """Return duration [s] and peak force [N] of a contact at the drop's first approach
     speed, between rigid bodies without gravity.
     """
-    impacts = simulate(
+    impacts = first_impact(law, drop)
+    return float(impacts["duration_s"][0]), float(np.nanmax(impacts["max_force_N"]))
+
+
+def first_impact(law: ContactLaw, drop: Drop) -> dict[str, Floats]:
+    """Return the impact table of a contact at the drop's first approach speed, between
+    rigid bodies without gravity.
+    """
+    return simulate(
         Problem(
             sphere=drop.ball,
             plate=rigid_plate(),
@@ -182,7 +190,6 @@ def first_contact(law: ContactLaw, drop: Drop) -> tuple[float, float]:
             impacts=1,
         )
     ).impacts
-    return float(impacts["duration_s"][0]), float(np.nanmax(impacts["max_force_N"]))
 
 
 def shared_notes(drop: Drop) -> list[str]:

@@ -28,7 +28,7 @@ def formats_document() -> dict[str, Any]:
 
 def export_document(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> dict[str, Any]:
     """Return the files written, the limitations of the format for this drop, the doubts
-    about it, the tests of the writer, and a dialog.
+    about it, the tests of the writer, a dialog, and tables of what is typed.
     """
     document: dict[str, Any] = {
         "format": format.name,
@@ -38,4 +38,6 @@ def export_document(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> 
     document |= {"doubts": list(drop.doubts), "tested": format.tested}
     if dialog := format.dialog(drop):
         document["adams_dialog"] = dialog
+    if tables := format.rows(drop):
+        document["tables"] = tables
     return document

@@ -7,12 +7,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import Any, TypeAlias
 
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.rigid_drop import as_rigid
 from vibroimpact.files.plain_names import identifier
 from vibroimpact.registry import find_named, modules_in
+
+Rows: TypeAlias = list[dict[str, str | float]]
+"""Rows of a table, each by the names of the columns."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +40,9 @@ class ExportFormat:
     dialog : callable
         Takes a `Drop`, returns the fields of the dialog of a contact in Adams View for each impact
         (`dialog_rows`); none by default.
+    rows : callable
+        Takes a `Drop`, returns the rows of tables by their names, which the command prints; none by
+        default.
     prepare : callable
         Takes a `Drop`, returns the one that is passed to `write` and `notes`: `as_rigid` for
         programs that simulate the motion of rigid bodies; by default the drop unchanged.
@@ -49,6 +55,7 @@ class ExportFormat:
     write: Callable[[Drop], Mapping[str, bytes]]
     notes: Callable[[Drop], list[str]] = lambda drop: []
     dialog: Callable[[Drop], list[dict[str, Any]]] = lambda drop: []
+    rows: Callable[[Drop], Mapping[str, Rows]] = lambda drop: {}
     prepare: Callable[[Drop], Drop] = lambda drop: drop
 
     @property

@@ -11,10 +11,14 @@ from rich.text import Text
 
 from vibroimpact.calibration.contact_law.adams_dialog import dialog_table
 from vibroimpact.exporting.drop import Drop
-from vibroimpact.exporting.export_format import ExportFormat, export_formats
+from vibroimpact.exporting.export_format import ExportFormat, Rows, export_formats
+from vibroimpact.report.report import Column, Table
 from vibroimpact.report.terminal_report import block_lines, warning_lines
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 from vibroimpact.units.display import digits
+
+_UNITS = {"_N_m_n": "N/m^n", "_Pa": "Pa", "_N": "N", "_s": "s"}
+"""Units at the ends of the names of columns."""
 
 _MOST = 6
 """Largest number of files that are listed; of more files, the first ones and a count."""
@@ -58,7 +62,21 @@ def export_summary(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> R
             f"impact {number} at {digits(speed)} m/s" for number, speed in enumerate(speeds, 1)
         ]
         lines += block_lines(dialog_table(dialog, names))
+    for name, rows in format.rows(drop).items():
+        lines += block_lines(_rows_table(name, rows))
     lines += [Text(f"Note: {note}", style="yellow") for note in format.notes(drop)]
     lines += warning_lines(drop.doubts)
     lines.append(Text(f"Tested: {format.tested}.", style="dim"))
     return Group(*lines)
+
+
+def _rows_table(name: str, rows: Rows) -> Table:
+    """Return rows as a table."""
+    columns = []
+    for column, first in rows[0].items():
+        is_text = isinstance(first, str)
+        cells = [str(row[column]) if is_text else f"{row[column]:.6g}" for row in rows]
+        suffix = next((ending for ending in _UNITS if column.endswith(ending)), "")
+        heading = column.removesuffix(suffix).replace("_", " ")
+        columns.append(Column(heading, cells, _UNITS.get(suffix, ""), is_text=is_text))
+    return Table(columns, title=name.replace("-", " ").capitalize())

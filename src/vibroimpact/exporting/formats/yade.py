@@ -63,14 +63,26 @@ def _damping(law: ContactLaw, drop: Drop, speed: float) -> float:
     if isinstance(law, Hertz):
         return 0.0
     restitution = float(achieved_restitution(law, drop.mass, speed))
+    return typed_damping(stiffness, exponent, restitution, drop.mass, speed)
+
+
+def typed_damping(
+    stiffness: float, exponent: float, restitution: float, mass: float, speed: float
+) -> float:
+    """Return betan of YADE's Mindlin law [-], or the dashpot of the linear law [N s/m], with a
+    restitution at a speed [m/s].
+
+    Examples
+    --------
+    >>> round(typed_damping(5e8, 1.5, 0.7, mass=0.09, speed=3.0), 3)
+    0.112
+    """
     if exponent == 1.0:
-        return clipped_dashpot(stiffness, exponent, restitution, drop.mass, speed)
-    clipped = _Clipped(stiffness=stiffness, restitution=restitution, effective_mass=drop.mass)
+        return clipped_dashpot(stiffness, exponent, restitution, mass, speed)
+    clipped = _Clipped(stiffness=stiffness, restitution=restitution, effective_mass=mass)
     # YADE refers the damping ratio to the tangent stiffness 3/2 K sqrt(delta)
     return math.sqrt(5.0 / 6.0) * float(
-        damping_ratio_from_restitution(
-            law_achieving(clipped, restitution, drop.mass, speed).restitution
-        )
+        damping_ratio_from_restitution(law_achieving(clipped, restitution, mass, speed).restitution)
     )
 
 
