@@ -18,7 +18,7 @@ from vibroimpact.contact.kelvin_voigt import (
     damping_ratio_from_restitution,
     restitution_from_damping_ratio,
 )
-from vibroimpact.exporting.formats.yade import _Clipped
+from vibroimpact.exporting.yade_damping import ClippedTsuji
 
 PAGE = "docs/guides/restitution-in-dem.md"
 ASKED = (0.9, 0.7, 0.5)
@@ -159,7 +159,7 @@ def test_restitutions_of_programs() -> None:
     half = float(damping_ratio_from_restitution(0.5))
     mfix = float(restitution_from_damping_ratio(2.0 / np.sqrt(5.0) * half))
     says(PAGE, "2/√5 = {} of that, so that 0.5 typed gives {}", 2.0 / np.sqrt(5.0), mfix)
-    clipped = _Clipped(stiffness=1e8, restitution=0.5, effective_mass=0.1)
+    clipped = ClippedTsuji(stiffness=1e8, restitution=0.5, effective_mass=0.1)
     says(
         PAGE,
         "never pulls either, and then rebounds with {} where 0.5 is typed",

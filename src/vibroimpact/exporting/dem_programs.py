@@ -32,7 +32,7 @@ from vibroimpact.exporting.contact_parameters import (
     linear_or_hertzian,
 )
 from vibroimpact.exporting.drop import Drop
-from vibroimpact.exporting.formats.yade import typed_damping
+from vibroimpact.exporting.yade_damping import yade_damping
 
 STEPS = 50
 """Steps in a contact with which a restitution is accurate to about 0.001 by velocity Verlet."""
@@ -344,7 +344,7 @@ def _lammps(contact: DemContact) -> list[Entry]:
 
 def _yade(contact: DemContact) -> list[Entry]:
     """Return the numbers of YADE's laws, which never pull."""
-    damping = typed_damping(
+    damping = yade_damping(
         contact.stiffness, contact.exponent, contact.restitution, contact.mass, contact.speed
     )
     if contact.is_hertzian:

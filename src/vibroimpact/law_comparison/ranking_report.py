@@ -18,7 +18,7 @@ from vibroimpact.charts.marks import Line, Mark, Points
 from vibroimpact.charts.palette import series
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.law_comparison.ranking import FittedLaw, Ranking
-from vibroimpact.report.report import Column, Explanation, Note, Report, Section, Table
+from vibroimpact.report.report import Column, Explanation, Facts, Note, Report, Section, Table
 from vibroimpact.results.csv_files import write_rows
 from vibroimpact.units.display import MISSING
 
@@ -64,15 +64,17 @@ def report_of(ranking: Ranking) -> Report:
             ),
         ),
     )
-    left_out = [f"{name} is left out: {reason}" for name, reason in ranking.left_out.items()]
+    sections = [fit]
+    if ranking.left_out:
+        left_out = Facts(list(ranking.left_out.items()))
+        sections.append(Section("left-out", "Laws left out", (left_out,)))
     ending = "" if number == 1 else "s"
     summary = _summary(ranking)
     return Report(
         title=f"{number} contact law{ending} by measured restitutions",
         answer=answer(ranking),
-        sections=(fit,),
+        sections=sections,
         charts=made_charts({"restitution": partial(_chart, ranking)}),
-        sentences=left_out,
         files={"ranking.csv": partial(_write, ranking)},
         summary=summary,
         provenance=ranking.source,

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 
-from vibroimpact.arrays import Array
 from vibroimpact.bodies.ball import mean_density
 from vibroimpact.contact.friction.law import CompliantFriction, FrictionLaw
-from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw, damping_ratio_from_restitution
+from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.tsuji import Tsuji
-from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
+from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.dynamics.statement.oblique import Oblique
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import (
     approach_speeds,
-    clipped_dashpot,
     first_contact,
     laws_of_impacts,
     linear_or_hertzian,
@@ -34,6 +31,7 @@ from vibroimpact.exporting.program_friction import (
     spring_of_overlap,
 )
 from vibroimpact.exporting.rigid_drop import as_rigid
+from vibroimpact.exporting.yade_damping import yade_damping
 from vibroimpact.files.plain_names import plain_words
 
 _FRICTION = dict.fromkeys(("mindlin-force", "mindlin", "mindlin-rescale", "mdr"), "mindlin-force")
@@ -45,16 +43,6 @@ which the damping is calibrated without.
 """
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Clipped(Tsuji):
-    """Tsuji's law as in YADE: without tension."""
-
-    tension = "cut"  # type: ignore[assignment]
-
-    def closed_form_restitution(self, mass: Array, speed: Array) -> None:
-        """Return None: no closed form; the law is integrated."""
-
-
 def _damping(law: ContactLaw, drop: Drop, speed: float) -> float:
     """Return the damping ratio betan of YADE's Mindlin law, or the dashpot of the linear
     law [N s/m], with the law's restitution.
@@ -63,27 +51,7 @@ def _damping(law: ContactLaw, drop: Drop, speed: float) -> float:
     if isinstance(law, Hertz):
         return 0.0
     restitution = float(achieved_restitution(law, drop.mass, speed))
-    return typed_damping(stiffness, exponent, restitution, drop.mass, speed)
-
-
-def typed_damping(
-    stiffness: float, exponent: float, restitution: float, mass: float, speed: float
-) -> float:
-    """Return betan of YADE's Mindlin law [-], or the dashpot of the linear law [N s/m], with a
-    restitution at a speed [m/s].
-
-    Examples
-    --------
-    >>> round(typed_damping(5e8, 1.5, 0.7, mass=0.09, speed=3.0), 3)
-    0.112
-    """
-    if exponent == 1.0:
-        return clipped_dashpot(stiffness, exponent, restitution, mass, speed)
-    clipped = _Clipped(stiffness=stiffness, restitution=restitution, effective_mass=mass)
-    # YADE refers the damping ratio to the tangent stiffness 3/2 K sqrt(delta)
-    return math.sqrt(5.0 / 6.0) * float(
-        damping_ratio_from_restitution(law_achieving(clipped, restitution, mass, speed).restitution)
-    )
+    return yade_damping(stiffness, exponent, restitution, drop.mass, speed)
 
 
 def _is_linear(drop: Drop) -> bool:
