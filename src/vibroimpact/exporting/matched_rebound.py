@@ -257,6 +257,6 @@ def _one_damping_note(
     with_first = float(rebound[0] / speeds[last])
     wanted = float(impacts["restitution_achieved"][last])
     return [
-        "A dialog takes one damping. That of the first impact gives impact "
-        f"{last + 1} a restitution of {with_first:.3f} in place of {wanted:.3f}."
+        f"With the damping of the first impact throughout, impact {last + 1} has a restitution of "
+        f"{with_first:.3f} in place of {wanted:.3f}."
     ]

@@ -105,7 +105,7 @@ def test_what_a_single_damping_gives_is_said() -> None:
     second = float(
         vi.laws.achieved_restitution(one, drop.mass, drop.impacts["approach_speed_m_s"][1])
     )
-    (note,) = (note for note in matched.notes if "one damping" in note)
+    (note,) = (note for note in matched.notes if "throughout" in note)
     assert f"a restitution of {second:.3f} in place of 0.7" in note
 
 
