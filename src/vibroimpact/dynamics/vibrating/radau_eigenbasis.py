@@ -40,9 +40,10 @@ def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
     rule = collocation_rule(NODES_PER_STRETCH, time_map, root)
     eigenvalues, forward, backward, filters = _eigenbasis(rule.integral)
     inverse = forward[:, 0] + 1j * forward[:, 1]
-    at_end = rule.end_slope
-    if time_map == "release":  # where the slope by the time is infinite
-        at_end = np.zeros(NODES_PER_STRETCH)
+    at_end = np.zeros(NODES_PER_STRETCH)
+    # at the release the slope by the time is infinite
+    if time_map != "release":
+        at_end = rule.end_slope
     nodes = np.append(0.0, rule.nodes)
     between_nodes = _between(nodes)
     basis = Basis(
