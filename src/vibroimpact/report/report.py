@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Literal
 
 from vibroimpact._version import __version__
 from vibroimpact.charts.chart import Chart
-from vibroimpact.units.display import multiple, text
+from vibroimpact.units.display import Multiple, column_texts, fixed, multiple, text
 
 
 @dataclass(frozen=True)
@@ -271,6 +271,7 @@ _EXACT = 1e-6
 
 _FIGURES = 5
 _LEAST_FIGURES = 2
+_RANGE_FIGURES = 4
 
 
 @dataclass(frozen=True)
@@ -282,15 +283,27 @@ class Quantity:
     name : str
         What it is.
     value : float
-        Its value in SI.
+        Its value in SI, or in per cent; an integer is a count.
     unit : str
-        Its SI unit; empty for a ratio.
+        Its SI unit, or "%"; empty for a ratio or a count.
     error : float, default NaN
         Its estimated relative error; NaN if it is not estimated.
     note : str
         What else is said of it, such as its impact, or the value in another unit.
     is_least : bool
         Whether the error may be larger.
+    interval : (float, float), optional
+        Its 95 % interval, where one is known in place of the error.
+    largest : float, default NaN
+        The largest value, where it is a range, of which `value` is the smallest.
+
+    Examples
+    --------
+    >>> accuracy = Quantity("Balanced accuracy", 98.1, "%", interval=(78.2, 99.8))
+    >>> accuracy.text.replace("\u00a0", " "), accuracy.error_text.replace("\u00a0", " ")
+    ('98 %', '95 %: 78 to 100 %')
+    >>> Quantity("Largest force", 7940.0, "N", largest=17034.0).text.replace("\u00a0", " ")
+    '7.94 to 17.03 kN'
     """
 
     name: str
@@ -299,10 +312,23 @@ class Quantity:
     error: float = math.nan
     note: str = ""
     is_least: bool = False
+    interval: tuple[float, float] | None = None
+    largest: float = math.nan
+
+    @property
+    def is_range(self) -> bool:
+        """Whether it is a range."""
+        return not math.isnan(self.largest)
 
     @property
     def text(self) -> str:
         """The value with its unit, in the digits that its error leaves."""
+        if isinstance(self.value, int):
+            return f"{self.value:,}"
+        if self.is_range:
+            return self._range_text
+        if self.interval is not None:
+            return self._in_unit(self._with_decimals(self.value))
         figures = _FIGURES
         if self.error > _EXACT:
             # the last one may be off by five
@@ -315,17 +341,52 @@ class Quantity:
 
     @property
     def error_text(self) -> str:
-        """The error in per cent; empty if there is none, or none is known."""
-        if not self.error > _EXACT:
+        """The error in per cent, or the interval; empty if there is none, or none is known."""
+        error = self.error
+        if self.interval is not None:
+            low, high = map(self._with_decimals, self.interval)
+            if low != high:
+                return f"95\u00a0%: {self._in_unit(f'{low} to {high}')}"
+            error = 0.5 * (self.interval[1] - self.interval[0]) / abs(self.value)
+        if not error > _EXACT:
             return ""
         bound = "± {} % or more" if self.is_least else "± {} %"
-        return bound.format(f"{float(f'{100.0 * self.error:.2g}'):g}")
+        return bound.format(f"{float(f'{100.0 * error:.2g}'):g}")
+
+    @property
+    def _range_text(self) -> str:
+        """The smallest and the largest value, in digits that tell them apart."""
+        size = multiple(self.unit, [self.value, self.largest]).size
+        smallest, largest = column_texts([self.value / size, self.largest / size], _RANGE_FIGURES)
+        return self._in_unit(f"{smallest} to {largest}")
+
+    @property
+    def _multiple(self) -> Multiple:
+        """The multiple of the unit in which value and ends are shown."""
+        values = [self.value, self.largest, *(self.interval or ())]
+        return multiple(self.unit, values)
+
+    def _in_unit(self, number: str) -> str:
+        """Return a number, or two, with the unit."""
+        return f"{number}\u00a0{self._multiple.unit}".rstrip("\u00a0")
+
+    def _with_decimals(self, value: float) -> str:
+        """Return a value in the decimals that the interval leaves."""
+        assert self.interval is not None
+        size = self._multiple.size
+        half = 0.5 * (self.interval[1] - self.interval[0]) / size
+        decimals = _FIGURES - 1
+        if half > 0.0:
+            # half an interval is 3 to 30 of the last digit
+            decimals = -math.floor(math.log10(half / 3.0))
+        before_point = len(f"{abs(self.value) / size:.0f}")
+        return fixed(value / size, min(max(decimals, 0), max(_FIGURES - before_point, 0)))
 
     @property
     def document(self) -> dict[str, Any]:
-        """The result as data for JSON."""
+        """The result as data for JSON; interval and largest value only where there are any."""
         error = self.error if math.isfinite(self.error) else None
-        return {
+        document = {
             "name": self.name,
             "value": self.value,
             "unit": self.unit,
@@ -333,6 +394,11 @@ class Quantity:
             "error_may_be_larger": self.is_least,
             "text": self.text.replace("\u00a0", " "),
         }
+        if self.interval is not None:
+            document["interval"] = list(self.interval)
+        if self.is_range:
+            document["largest"] = self.largest
+        return document
 
 
 @dataclass(frozen=True)

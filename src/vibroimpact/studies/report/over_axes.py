@@ -11,6 +11,7 @@ from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Band, Line, Mark, Points
 from vibroimpact.quoting import shortened, visible
 from vibroimpact.studies.computation.study import Study
+from vibroimpact.studies.report.answer import FEW_DROPS
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.drops import MOST_DROPS, Group, values_at
 from vibroimpact.studies.report.labels import BAND, keys_told
@@ -61,11 +62,12 @@ def over_axes_chart(
     panels = []
     for axis in axes[:MOST_AXES]:
         marks: list[Mark] = [
-            Points(group.places[axis.key], height, group.name, group.role, group.texts, group.keys)
+            _drops(study, axes, axis, group, height)
             for group, height in zip(groups, heights, strict=True)
         ]
-        if np.isfinite(values).any() and _has_band(study):
-            marks = _with_band(marks, axis, places(axis, values_at(study, axis, numbers)), values)
+        if np.isfinite(values).any() and _has_medians(study):
+            where = places(axis, values_at(study, axis, numbers))
+            marks = _with_medians(marks, axis, where, values, has_band=_has_band(study, axis))
         panels.append(Panel(key_axis(axis), up, tuple(marks)))
     return Chart(
         output.name,
@@ -76,25 +78,48 @@ def over_axes_chart(
     )
 
 
-def _has_band(study: Study) -> bool:
-    """Return whether medians and bands are drawn: on a grid, where each level has many
-    drops, and of enough points.
+def _drops(
+    study: Study, axes: list[StudyAxis], axis: StudyAxis, group: Group, height: Floats
+) -> Mark:
+    """Return drops as points; few of them with a line where only their keys together change."""
+    where = group.places[axis.key]
+    is_path = study.design == "zip" or (len(axes) == 1 and not study.is_grid)
+    if is_path and axis.numeric and study.size <= FEW_DROPS:
+        order = np.argsort(where, kind="stable")
+        texts = tuple(group.texts[number] for number in order.tolist())
+        return Line(where[order], height[order], group.name, group.role, marked=True, texts=texts)
+    return Points(where, height, group.name, group.role, group.texts, group.keys)
+
+
+def _has_medians(study: Study) -> bool:
+    """Return whether medians are drawn: on a grid, where levels have several drops, and of enough
+    points.
     """
     return study.is_grid or independent_drops(study) > _FEWEST
 
 
-def _with_band(marks: list[Mark], axis: StudyAxis, where: Floats, values: Floats) -> list[Mark]:
-    """Return marks with the median and the band of values along an axis, the band below them."""
+def _has_band(study: Study, axis: StudyAxis) -> bool:
+    """Return whether percentiles are drawn beside medians: not those of levels of few drops."""
+    if study.is_grid:
+        return study.size > FEW_DROPS * len(axis.values)
+    return _has_medians(study)
+
+
+def _with_medians(
+    marks: list[Mark], axis: StudyAxis, where: Floats, values: Floats, *, has_band: bool
+) -> list[Mark]:
+    """Return marks with the median of values along an axis, and with the band below them."""
     finite = np.isfinite(values)
     middles, bands = _in_bins(where[finite], values[finite], axis)
     low, middle, high = bands.T
-    if not axis.numeric:
+    if not axis.numeric and has_band:
         return [*marks, Points(middles, middle, f"median, {BAND}", "main", low=low, high=high)]
-    return [
-        Band(middles, low, high, BAND, "band"),
-        *marks,
-        Line(middles, middle, "median", "main", marked=len(middles) <= _BINS),
-    ]
+    if not axis.numeric:
+        return [*marks, Points(middles, middle, "median", "main")]
+    median = Line(middles, middle, "median", "main", marked=len(middles) <= _BINS)
+    if has_band:
+        return [Band(middles, low, high, BAND, "band"), *marks, median]
+    return [*marks, median]
 
 
 def _in_bins(where: Floats, values: Floats, axis: StudyAxis) -> tuple[Floats, Floats]:
@@ -121,11 +146,13 @@ def _caption(study: Study, axes: list[StudyAxis]) -> str:
     if study.design == "saltelli":
         blocks = " of the blocks A and B"
     band = ""
-    if _has_band(study):
+    if any(_has_band(study, axis) for axis in axes[:MOST_AXES]):
         band = (
             f"; the line and the band are the median and {BAND} of drops with the same value, or "
             f"of drops next to each other where a key has more than {_BINS} numbers"
         )
+    elif _has_medians(study):
+        band = "; the line is the median of drops with the same value"
     first = ""
     if len(axes) > MOST_AXES:
         first = f" Drawn are the first {MOST_AXES} of {len(axes)} keys."

@@ -20,6 +20,7 @@ from vibroimpact.results.csv_files import write_csv
 from vibroimpact.studies.computation.study import Study
 from vibroimpact.studies.computation.study_folder import study_toml
 from vibroimpact.studies.planning.design import find_design
+from vibroimpact.studies.report.answer import FEW_DROPS, answer_of
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.card import CARD, data_card
 from vibroimpact.studies.report.charts import study_charts
@@ -36,6 +37,7 @@ from vibroimpact.studies.report.tables import (
     failures_table,
     percentiles_rows,
     percentiles_table,
+    points_table,
     reason_sentences,
     reasons,
     sensitivity_rows,
@@ -79,6 +81,7 @@ def report_of(study: Study) -> Report:
     return Report(
         title=study.name,
         answer=counts_sentence(study),
+        quantities=answer_of(study, outputs, sensitivity),
         has_failed=len(study.failures) == study.size,
         sentences=[restitution] if restitution else [],
         sections=_sections(study, outputs, sensitivity),
@@ -121,7 +124,7 @@ def _sections(
         )
     last = sections[-1]
     sections[-1] = replace(last, blocks=(*last.blocks, *notes))
-    return [*sections, _study_section(study), short_section(study, outputs, sensitivity)]
+    return [*sections, _study_section(study), short_section(study, outputs)]
 
 
 def _swept_section(study: Study) -> Section:
@@ -145,22 +148,41 @@ def _failures_section(study: Study) -> Section:
 
 
 def _distribution_section(study: Study, outputs: list[Output]) -> Section | None:
-    """Return how the results are distributed; None without a value of any."""
+    """Return how the results are distributed, of few drops each of them; None without a value of
+    any.
+    """
+    if study.size <= FEW_DROPS:
+        return _points_section(study, outputs)
     table = percentiles_table(outputs)
     if not table.columns[0].cells:
         return None
+    note = f"In SI with all digits: percentiles.csv.{_left_out_words(outputs)}"
+    blocks = (Paragraph(spread_words(study)), table, Note(note))
+    return Section("spread", "Distribution of the results", blocks, medium="page")
+
+
+def _points_section(study: Study, outputs: list[Output]) -> Section | None:
+    """Return the results of each drop; None without a value of any."""
+    table = points_table(study, outputs)
+    if table is None:
+        return None
+    note = f"Further results, and all digits in SI: drops.csv.{_left_out_words(outputs)}"
+    return Section("spread", "Results of the drops", (table, Note(note)), medium="page")
+
+
+def _left_out_words(outputs: list[Output]) -> str:
+    """Return sentences on the results that tables leave out, as they have nothing to show."""
     left_out = {
         "Zero in all drops": [output for output in outputs if output.is_zero],
         "Without a value in any drop": [
             output for output in outputs if not output.spread.drops and not output.is_sensor_reading
         ],
     }
-    note = "In SI with all digits: percentiles.csv."
+    sentences = ""
     for reason, results in left_out.items():
         if results:
-            note += f" {reason}: {', '.join(output.title for output in results).lower()}."
-    blocks = (Paragraph(spread_words(study)), table, Note(note))
-    return Section("spread", "Distribution of the results", blocks, medium="page")
+            sentences += f" {reason}: {', '.join(output.title for output in results).lower()}."
+    return sentences
 
 
 def _sensitivity_section(sensitivity: Sensitivity, drawn: list[Output]) -> Section | None:

@@ -16,10 +16,10 @@ from vibroimpact.studies.computation.study import Study, StudyDoubt
 from vibroimpact.studies.planning.unit_slips import study_slips
 from vibroimpact.studies.report.axes import StudyAxis, study_axes
 from vibroimpact.studies.report.labels import drops_text, percent, range_text, value_text
-from vibroimpact.studies.report.outputs import Output
+from vibroimpact.studies.report.outputs import Output, read_output
 from vibroimpact.studies.report.percentiles import PERCENTILES
 from vibroimpact.studies.report.sensitivity_table import RANGES, RANKS, SOBOL, Sensitivity
-from vibroimpact.units.display import MISSING, digits, fixed
+from vibroimpact.units.display import MISSING, column_texts, digits, fixed, multiple
 
 PERCENTILE_COLUMNS = [
     "output",
@@ -34,6 +34,8 @@ PERCENTILE_COLUMNS = [
 COUNTED_FROM = "Drops are counted from 0, as in study.nc and drops.csv."
 
 _WORST_KEYS = 4  # keys shown of the worst drop; all are in drops.csv
+
+MOST_COLUMNS = 6  # results of a table of few drops
 
 _COUNT = "number_of_impacts"
 _COUNTS = ("points", "drops")  # columns of whole numbers in sensitivity.csv
@@ -138,6 +140,42 @@ def axes_table(study: Study, axes: list[StudyAxis]) -> list[tuple[str, str, str]
             values = f"{len(axis.values)} levels, {values}"
         rows.append((axis.key, axis.words, values))
     return rows
+
+
+def points_table(study: Study, outputs: list[Output]) -> Table | None:
+    """Return the table of few drops, a row for each: keys and results; None without a value."""
+    shown = main_results(outputs, MOST_COLUMNS)
+    if not shown:
+        return None
+    axes = study_axes(study)
+    numbers = range(study.size)
+    points = [point_of(study, axes, number) for number in numbers]
+    columns = [Column("Drop", [str(number) for number in numbers], is_text=True)]
+    for place, axis in enumerate(axes):
+        if axis.varies:
+            unit, cells = _key_cells(axis, [point[place] for point in points])
+            columns.append(Column(axis.key, cells, unit, is_text=not axis.numeric))
+    for output in shown:
+        values = read_output(study, output.name) / output.scale.size
+        columns.append(Column(output.title, column_texts(values, 4), output.scale.unit))
+    # a narrow terminal has the most important results
+    expendable = [output.title for output in reversed(shown[1:])]
+    return Table(columns, file="drops.csv", expendable=expendable)
+
+
+def _key_cells(axis: StudyAxis, values: list[Any]) -> tuple[str, list[str]]:
+    """Return the unit and the cells of a key in some drops."""
+    if not axis.numeric:
+        return "", [value_text(axis, value) for value in values]
+    scale = multiple(axis.unit, values)
+    return scale.unit, column_texts(np.array(values, dtype=float) / scale.size, 4)
+
+
+def main_results(outputs: list[Output], most: int) -> list[Output]:
+    """Return the first results that vary; if none does, the first that have a value."""
+    with_values = [output for output in outputs[: most + 3] if output.spread.drops]
+    varying = [output for output in with_values if output.spread.varies]
+    return (varying or with_values)[:most]
 
 
 def percentiles_table(outputs: list[Output]) -> Table:
