@@ -28,6 +28,7 @@ from vibroimpact.recognition.classifiers import (
 from vibroimpact.recognition.cross_validation import Chosen, Validated, cross_validate
 from vibroimpact.recognition.dataset_signals import load_labelled_signals
 from vibroimpact.recognition.extra import needs_extra
+from vibroimpact.recognition.few_groups import few_groups_doubts
 from vibroimpact.recognition.folds import default_folds
 from vibroimpact.recognition.fraction import Streams, draw_rates, try_streams
 from vibroimpact.recognition.importance import Importance, permutation_importance
@@ -242,14 +243,16 @@ def recognise(
     best = _best_classifier(compared, scores)
     (probe,) = (classifier.name for classifier in compared if classifier.kind == PROBE)
     doubts += bound_doubts(scores, signals.bayes_error, probe, best.name, signals.bayes_error_sees)
+    group_count = len(np.unique(groups))
+    class_count = len(signals.class_names)
+    doubts += few_groups_doubts(scores[best.name], group, group_count, class_count)
     chosen = Chosen(best, classes, groups, grouped[best.name], seed)
     held_out = chosen.validated.held_out.mean(axis=0)
     curve = reliability(held_out, classes, signals.class_names, bootstrap)
-    class_count = len(signals.class_names)
     return Recognition(
         name=signals.name,
         group=group,
-        groups=len(np.unique(groups)),
+        groups=group_count,
         folds=folds,
         seeds=used_seeds,
         class_names=signals.class_names,

@@ -14,15 +14,17 @@ from vibroimpact.recognition.bound import SURE
 from vibroimpact.recognition.charts import recognition_charts
 from vibroimpact.recognition.classifiers import CLASSIFIER
 from vibroimpact.recognition.few_groups import (
+    are_too_few,
     coarse,
     groups_for_bound,
     groups_for_error,
     largest_error_of_none,
+    simpler_and_as_good,
 )
 from vibroimpact.recognition.recognise import Recognition
 from vibroimpact.recognition.recogniser import FOLDER, save_recogniser
 from vibroimpact.recognition.scores import Score, Scores
-from vibroimpact.report.report import Explanation, Report, Section, Table, table_of
+from vibroimpact.report.report import Explanation, Quantity, Report, Section, Table, table_of
 from vibroimpact.results.csv_files import write_csv
 
 Row = dict[str, Any]
@@ -59,6 +61,7 @@ def report_of(recognition: Recognition) -> Report:
             f"{counts}; {recognition.groups} {recognition.group}s, {recognition.folds} folds, "
             f"{seeds}"
         ),
+        quantities=list(answer_of(recognition)),
         sentences=list(sentences(recognition)),
         sections=(
             _scores_section(recognition),
@@ -358,18 +361,59 @@ def _summary(recognition: Recognition) -> dict[str, Any]:
     }
 
 
+def answer_of(recognition: Recognition) -> Iterator[Quantity]:
+    """Yield scores of the best classifier, what bounds them, and whether the groups suffice."""
+    best = recognition.scores[recognition.best]
+    group = recognition.group
+    yield _score_quantity("Balanced accuracy", best.balanced_accuracy, recognition.best)
+    yield _score_quantity("Classification error", best.error, f"on {group}s not used in training")
+    if recognition.bayes_error is not None:
+        note = "on the error"
+        if recognition.bayes_error < _LEAST_SHOWN:
+            note = "below 0.05 %, which excludes nothing"
+        yield Quantity("Lower bound", 100.0 * recognition.bayes_error, "%", note=note, figures=2)
+    if are_too_few(best.error, recognition.groups):
+        needed = groups_for_error(best.error, recognition.groups)
+        note = f"too few: about {needed:,} are needed for ±5 %"
+    else:
+        note = "enough for an error within ±5 %"
+    yield Quantity(f"{group.capitalize()}s", recognition.groups, note=note)
+    if recognition.streams:
+        most = max(stream.impacts for stream in recognition.streams)
+        longest = (stream for stream in recognition.streams if stream.impacts == most)
+        worst = max(longest, key=lambda stream: stream.error)
+        yield Quantity(
+            f"Error of the fraction of {worst.class_name}",
+            100.0 * worst.error,
+            "%",
+            figures=2,
+            note=f"root mean square, in {most:,} impacts, at the fraction {worst.fraction:g}",
+        )
+
+
+def _score_quantity(name: str, score: Score, note: str) -> Quantity:
+    """Return a score in per cent with its interval."""
+    interval = (100.0 * score.low, 100.0 * score.high)
+    return Quantity(name, 100.0 * score.value, "%", note=note, interval=interval)
+
+
 def sentences(recognition: Recognition) -> Iterator[str]:
     """Yield what the scores say, in sentences."""
-    best = recognition.scores[recognition.best]
     digits = _digits(recognition)
+    at_random = recognition.random[recognition.best].balanced_accuracy.value
     yield (
-        f"The best classifier, {recognition.best}, has a balanced accuracy of "
-        f"{_percent(best.balanced_accuracy.value, digits)} % "
-        f"({_percents(best.balanced_accuracy, digits)} %) on {recognition.group}s not used in "
-        "training; a random split gives "
-        f"{_percent(recognition.random[recognition.best].balanced_accuracy.value, digits)} %."
+        f"The best classifier of all features is {recognition.best}. Its scores are those on "
+        f"{recognition.group}s not used in training; a random split would give a balanced "
+        f"accuracy of {_percent(at_random, digits)} %."
     )
-    yield from _few(recognition)
+    simpler = simpler_and_as_good(recognition.compared, recognition.scores, recognition.best)
+    if simpler is not None:
+        accuracy = recognition.scores[simpler].balanced_accuracy
+        yield (
+            f"With these {recognition.group}s a simpler classifier can't be told to be worse: "
+            f"{simpler}, balanced accuracy {_percent(accuracy.value, digits)} % "
+            f"({_percents(accuracy, digits)} %)."
+        )
     if recognition.bayes_error is not None:
         if recognition.bayes_error >= _LEAST_SHOWN:
             least = f"{_percent(recognition.bayes_error)} %"
@@ -385,10 +429,7 @@ def sentences(recognition: Recognition) -> Iterator[str]:
                 "that sees more can be better. For a "
                 "band, a noise and a scatter of a sensor vibroimpact bound computes such bounds."
             )
-        yield (
-            f"{bound} The error of the best classifier is {_percent(best.error.value, digits)} "
-            f"% ({_percents(best.error, digits)} %)."
-        )
+        yield bound
         most = largest_error_of_none(recognition.groups, recognition.folds)
         if _LEAST_SHOWN <= recognition.bayes_error <= most:
             yield (
@@ -399,39 +440,6 @@ def sentences(recognition: Recognition) -> Iterator[str]:
                 f"{groups_for_bound(recognition.bayes_error, recognition.folds):,} "
                 f"{recognition.group}s are needed."
             )
-    hardest = [
-        stream
-        for stream in recognition.streams
-        if stream.impacts == max(row.impacts for row in recognition.streams)
-    ]
-    if hardest:
-        worst = max(hardest, key=lambda row: row.error)
-        yield (
-            f"The fraction of {worst.class_name} in a stream of {worst.impacts} impacts "
-            f"has an error of {_percent(worst.error, digits)} "
-            "percentage points (root mean square, at the fraction with the largest error, "
-            f"{worst.fraction:g})."
-        )
-
-
-def _few(recognition: Recognition) -> Iterator[str]:
-    """Yield what the number of groups does not allow to tell."""
-    best = recognition.scores[recognition.best]
-    if not coarse(best.error):
-        return
-    yield (
-        f"With {recognition.groups} {recognition.group}s errors between "
-        f"{_percent(best.error.low, 0)} and {_percent(best.error.high, 0)} % can't be "
-        f"told apart; for +-5 % some {groups_for_error(best.error, recognition.groups):,} "
-        f"{recognition.group}s are needed. More signals of the same "
-        f"{recognition.group}s do not replace them."
-    )
-    chance = 1.0 / len(recognition.class_names)
-    if best.balanced_accuracy.low <= chance:
-        yield (
-            f"Whether the best classifier is better than guessing, {_percent(chance, 0)} %, "
-            "can't be told."
-        )
 
 
 def _digits(recognition: Recognition) -> int:

@@ -296,6 +296,8 @@ class Quantity:
         Its 95 % interval, where one is known in place of the error.
     largest : float, default NaN
         The largest value, where it is a range, of which `value` is the smallest.
+    figures : int, default 5
+        Its significant figures at most.
 
     Examples
     --------
@@ -314,6 +316,7 @@ class Quantity:
     is_least: bool = False
     interval: tuple[float, float] | None = None
     largest: float = math.nan
+    figures: int = _FIGURES
 
     @property
     def is_range(self) -> bool:
@@ -329,11 +332,11 @@ class Quantity:
             return self._range_text
         if self.interval is not None:
             return self._in_unit(self._with_decimals(self.value))
-        figures = _FIGURES
+        figures = self.figures
         if self.error > _EXACT:
             # the last one may be off by five
             figures = math.floor(1.3 - math.log10(self.error))
-        figures = min(max(figures, _LEAST_FIGURES), _FIGURES)
+        figures = min(max(figures, _LEAST_FIGURES), self.figures)
         rounded = float(f"{self.value:.{figures - 1}e}")
         # zeros ahead of the decimal point are shown: the error tells that they are not certain
         scaled = abs(rounded) / multiple(self.unit, rounded).size

@@ -14,14 +14,20 @@ from scipy.stats import binomtest, norm
 import vibroimpact as vi
 from knock_data import knocks, write_knocks
 from stated_numbers import says
-from vibroimpact.recognition.few_groups import coarse, groups_for_error
+from vibroimpact.recognition.classifiers import all_classifiers
+from vibroimpact.recognition.few_groups import (
+    coarse,
+    few_groups_doubts,
+    groups_for_error,
+    simpler_and_as_good,
+)
 from vibroimpact.recognition.folds import default_folds, split_signals
 from vibroimpact.recognition.input_faults import check_signals
 from vibroimpact.recognition.labelled_signals import LabelledSignals, SensorSignals
 from vibroimpact.recognition.recorder_leaks import recorder_leaks
 from vibroimpact.recognition.reliability import reliability
 from vibroimpact.recognition.report import score_cells, sentences
-from vibroimpact.recognition.scores import Bootstrap, score
+from vibroimpact.recognition.scores import Bootstrap, Scores, score
 
 FALLS = 4
 DISTANCE, FEATURES = 2.0, 6
@@ -250,12 +256,12 @@ def test_what_few_rocks_can_not_tell_is_said(few: vi.recognition.Recognition) ->
     assert few.folds == 3
     told = list(sentences(few))
     error: Any = few.scores[few.best].error
-    (needed,) = (one for one in told if "can't be told apart" in one)
+    (needed,) = (one for one in few.doubts if "are too few" in one)
     assert needed.startswith(
-        f"With 6 rocks errors between {100 * error.low:.0f} and {100 * error.high:.0f} % "
-        "can't be told apart; for +-5 % "
+        "6 rocks are too few: the error of the best classifier may be anything from "
+        f"{100 * error.low:.0f} to {100 * error.high:.0f} %; for ±5 % "
     )
-    assert f"some {groups_for_error(error, 6):,} rocks are needed" in needed
+    assert f"about {groups_for_error(error, 6):,} rocks are needed" in needed
     assert any(
         one.startswith("With 6 rocks no classifier can be shown to be better than this bound")
         for one in told
@@ -288,3 +294,59 @@ def _error(rocks: int, falls: int, own: bool) -> Any:
     random = np.random.default_rng(0)
     wrong = rock // 2 % 4 == 0 if own else random.permutation(len(rock)) % 4 == 0
     return Bootstrap(rock, rock % 2, 0, 4).mean(wrong.astype(float)[np.newaxis])
+
+
+# the answer
+
+
+def test_the_answer_has_the_best_classifier_the_bound_and_how_many_rocks_are_needed(
+    few: vi.recognition.Recognition,
+) -> None:
+    answer = {quantity.name: quantity for quantity in few.report.quantities}
+    best = few.scores[few.best]
+    accuracy = answer["Balanced accuracy"]
+    assert accuracy.value == 100.0 * best.balanced_accuracy.value
+    ends = (best.balanced_accuracy.low, best.balanced_accuracy.high)
+    assert accuracy.interval == pytest.approx([100.0 * end for end in ends])
+    assert accuracy.note == few.best
+    assert few.bayes_error is not None
+    assert answer["Lower bound"].value == pytest.approx(100.0 * few.bayes_error)
+    rocks = answer["Rocks"]
+    assert rocks.value == 6
+    assert rocks.note == f"too few: about {groups_for_error(best.error, 6):,} are needed for ±5 %"
+    (warning,) = (doubt for doubt in few.doubts if "are too few" in doubt)
+    assert warning in few.report.warnings
+    assert few.report.document["answer"][0]["unit"] == "%"
+
+
+def test_enough_rocks_are_not_warned_of() -> None:
+    known = Scores(*(_error(600, 4, own=True) for _ in range(4)))
+    assert few_groups_doubts(known, "rock", 600, 2) == []
+    unknown = Scores(*(_error(8, 4, own=True) for _ in range(4)))
+    (warning,) = few_groups_doubts(unknown, "rock", 8, 2)
+    # its accuracy of a quarter is below a half
+    assert warning.endswith("no better than guessing, whose balanced accuracy is 50 %")
+
+
+@pytest.mark.parametrize(("wrong", "named"), [(0.05, "contact time alone"), (0.3, None)])
+def test_a_simpler_classifier_is_named_where_it_is_not_shown_to_be_worse(
+    wrong: float, named: str | None
+) -> None:
+    """Of 100 rocks the best errs in 4 %, and the simpler one in 5 or in 30 %."""
+    rock = np.repeat(np.arange(100), 4)
+    truth = rock % 2
+    bootstrap = Bootstrap(rock, truth, 0, 4)
+    random = np.random.default_rng(2)
+
+    def with_errors(share: float) -> Scores:
+        guessed = np.where(random.random(len(rock)) < share, 1 - truth, truth)
+        return score(np.eye(2)[guessed][np.newaxis], truth, bootstrap)
+
+    scores = {
+        "majority": score(np.eye(2)[0 * truth][np.newaxis], truth, bootstrap),
+        "contact time alone": with_errors(wrong),
+        "logistic regression": with_errors(0.04),
+    }
+    compared = [classifier for classifier in all_classifiers() if classifier.name in scores]
+    assert simpler_and_as_good(compared, scores, "logistic regression") == named
+    assert simpler_and_as_good(compared, scores, "majority") is None
