@@ -106,7 +106,7 @@ OBSERVATIONS = (
     ),
     Observation(
         "height, bounce and size",
-        "all of these",
+        "impulse, contact time, speed, the time to the next impact and the radius",
         ("impulse", "duration", "speed", "interval", "radius"),
     ),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -18,6 +18,7 @@ from vibroimpact.report.report import (
     Explanation,
     Facts,
     Note,
+    Quantity,
     Report,
     Section,
     Table,
@@ -75,6 +76,7 @@ def report_of(bound: Bound) -> Report:
     return Report(
         title=f"Bounds on the classification error: {bound.name}",
         answer=headline(bound),
+        quantities=answer_of(bound),
         sentences=(scatter_sentences(bound),),
         sections=(measured, quantities),
         charts=bound_charts(bound),
@@ -108,6 +110,35 @@ def error_interval(error: BayesError) -> str:
     if low == high:
         return f"{high} %"
     return f"{low} to {high} %"
+
+
+_ANSWERED = ("contact time", "one impact", "one impact, place unknown", "height, bounce and size")
+"""Measured quantities whose error the answer states."""
+
+
+def answer_of(bound: Bound) -> list[Quantity]:
+    """Return the lowest errors of classifiers of some quantities, and of one that sees nothing."""
+    meanings = {observation.name: observation.meaning for observation in OBSERVATIONS}
+    quantities = []
+    for name in _ANSWERED:
+        error = bound.errors[name]
+        # of few neighbours the lower bound tells nothing
+        lowest = error.lower if error.neighbours >= _FEW else 0.0
+        quantities.append(
+            Quantity(
+                f"Lowest error: {name}",
+                100.0 * lowest,
+                "%",
+                note=f"from {meanings[name]}",
+                largest=100.0 * error.upper,
+                figures=2,
+            )
+        )
+    majority = "always naming the most frequent class"
+    blind = Quantity("Error without a measurement", 100.0 * bound.majority, "%", note=majority)
+    most = max(error.standard_error for error in bound.errors.values())
+    note = f"standard error of the upper bounds up to {100.0 * most:.1f} %"
+    return [*quantities, replace(blind, figures=3), Quantity("Falls", len(bound.falls), note=note)]
 
 
 def headline(bound: Bound) -> str:

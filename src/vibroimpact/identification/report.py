@@ -14,14 +14,23 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.files.result_folder import CASE, write_case
 from vibroimpact.identification.charts import identification_charts
 from vibroimpact.identification.identify import Identification
-from vibroimpact.report.report import Explanation, Note, Report, Section, Table, table_of
+from vibroimpact.report.report import (
+    Explanation,
+    Note,
+    Quantity,
+    Report,
+    Section,
+    Table,
+    finite_interval,
+    table_of,
+)
 from vibroimpact.results.csv_files import write_columns
 from vibroimpact.signals.estimate import Estimate
 from vibroimpact.units.display import digits, multiple
 
 _MEANINGS = {
-    "place_x_m": ("place, x", "m"),
-    "place_y_m": ("place, y", "m"),
+    "place_x_m": ("position, x", "m"),
+    "place_y_m": ("position, y", "m"),
     "first_touch_s": ("first touch", "s"),
     "radius_m": ("radius", "m"),
     "mass_kg": ("mass", "kg"),
@@ -47,7 +56,7 @@ def report_of(identification: Identification) -> Report:
         model_errors = ", the estimated errors of the plate's frequencies and of the modes left out"
     estimates = Section(
         "found",
-        "What was found",
+        "Identified values",
         (
             estimates_table(identification),
             Note(f"Taken as certain, in no interval: {certain}."),
@@ -65,6 +74,7 @@ def report_of(identification: Identification) -> Report:
         files = {"force.csv": partial(_write_force, identification), **files}
     return Report(
         title=f"{identification.plate.case.name or 'An impact'}, identified",
+        quantities=answer_of(identification),
         sections=(estimates,),
         charts=identification_charts(identification),
         warnings=identification.doubts,
@@ -72,6 +82,28 @@ def report_of(identification: Identification) -> Report:
         summary=_summary(identification),
         provenance="the case is case.toml, beside this page.",
     )
+
+
+_ANSWERED = ("radius_m", "speed_m_s", "place_x_m", "place_y_m", "max_force_N", "duration_s")
+"""Estimates that the answer states; the table has all."""
+
+
+def answer_of(identification: Identification) -> list[Quantity]:
+    """Return the main identified values with their intervals."""
+    quantities = []
+    for name in _ANSWERED:
+        if name not in identification.estimates:
+            continue
+        estimate = identification.estimates[name]
+        meaning, unit = _MEANINGS[name]
+        title = meaning[:1].upper() + meaning[1:]
+        if estimate.deviation == 0.0:
+            quantity = Quantity(title, estimate.value, unit, note="given")
+        else:
+            interval = finite_interval(*estimate.interval)
+            quantity = Quantity(title, estimate.value, unit, interval=interval)
+        quantities.append(quantity)
+    return quantities
 
 
 def estimates_table(identification: Identification) -> Table:

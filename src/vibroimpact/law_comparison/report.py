@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,7 @@ from vibroimpact.report.report import (
     Explanation,
     Facts,
     Note,
+    Quantity,
     Report,
     Section,
     Table,
@@ -76,6 +78,7 @@ def report_of(comparison: Comparison) -> Report:
         # without the name of the case, which may mention a law that is not compared
         title=f"One drop with {number} contact {laws}",
         answer=_drop(comparison),
+        quantities=list(_answer(comparison)),
         sections=(impact, loss),
         charts=comparison_charts(comparison),
         warnings=comparison_warnings(comparison),
@@ -90,6 +93,27 @@ def report_of(comparison: Comparison) -> Report:
         data={**summary, "laws": cases},
         provenance="the case under each law is in the folder cases.",
     )
+
+
+def _answer(comparison: Comparison) -> Iterator[Quantity]:
+    """Yield how far results of the first impact differ between the laws, and which laws do."""
+    names = list(comparison.results)
+    for column in ("restitution_achieved", *_COLUMNS):
+        values = np.array(
+            [_first(result.impacts[column], np.nan) for result in comparison.results.values()]
+        )
+        if not np.isfinite(values).any():
+            continue
+        smallest = int(np.nanargmin(values))
+        largest = int(np.nanargmax(values))
+        note = f"smallest by {names[smallest]}, largest by {names[largest]}"
+        if smallest == largest:
+            note = f"by {names[smallest]}"
+        label = ALL_IMPACT_COLUMNS[column].label
+        unit = ALL_IMPACT_COLUMNS[column].unit
+        yield Quantity(
+            label, float(values[smallest]), unit, note=note, largest=float(values[largest])
+        )
 
 
 def _drop(comparison: Comparison) -> str:

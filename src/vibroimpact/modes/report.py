@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -29,12 +29,14 @@ from vibroimpact.report.report import (
     Explanation,
     Facts,
     Figure,
+    Quantity,
     Report,
     Scene,
     Section,
     Warnings,
 )
 from vibroimpact.results.csv_files import write_csv
+from vibroimpact.units.display import text
 
 
 def report_of(modes: Modes, measured: MeasuredTable | None = None) -> Report:
@@ -59,8 +61,10 @@ def report_of(modes: Modes, measured: MeasuredTable | None = None) -> Report:
     for name, body in modes.items():
         sections.append(_body(name, body))
         sections.append(_shapes(name, charts[f"{name}_modes"]))
+    measured_quantities: Sequence[Quantity] = ()
     if measured is not None:
         sections.append(_measured(measured))
+        measured_quantities = measured.quantities
     sections.extend(_motion(modes))
     sections.append(_case(modes))
     summary = summary_of_modes(modes)
@@ -69,12 +73,25 @@ def report_of(modes: Modes, measured: MeasuredTable | None = None) -> Report:
         data |= {"measured": list(measured.rows), "doubts": list(measured.doubts)}
     return Report(
         title=f"Modes of {modes.case.name or 'a case'}",
+        quantities=[*_answer(modes), *measured_quantities],
         sections=sections,
         files=_files(modes, measured),
         summary=summary,
         data=data,
         provenance="meshes and shapes for other programs are beside this page.",
     )
+
+
+def _answer(modes: Modes) -> Iterator[Quantity]:
+    """Yield the first frequency of each body with its error, and the number of its modes."""
+    for name, body in modes.items():
+        frequencies = body.basis.frequencies
+        if not len(frequencies):
+            continue
+        error = float(body.model.frequency_errors[0])
+        yield Quantity(f"First frequency of the {name}", float(frequencies[0]), "Hz", error)
+        highest = text(float(frequencies[-1]), "Hz")
+        yield Quantity(f"Modes of the {name}", len(frequencies), note=f"up to {highest}")
 
 
 def _body(name: str, body: BodyModes) -> Section:
@@ -134,8 +151,8 @@ def _motion(modes: Modes) -> list[Section]:
 
 def _case(modes: Modes) -> Section:
     """Return the case as text."""
-    text = case_text(resolved_case(modes.case))
-    return Section("case", "Case", (text,), after_charts=True, medium="page")
+    case = case_text(resolved_case(modes.case))
+    return Section("case", "Case", (case,), after_charts=True, medium="page")
 
 
 def _files(modes: Modes, measured: MeasuredTable | None) -> dict[str, Callable[[Path], object]]:

@@ -12,7 +12,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.bodies.elastic import ElasticBody
 from vibroimpact.cases.elastic.modes import BodyModes
-from vibroimpact.report.report import Column, Gap, Table
+from vibroimpact.report.report import Column, Gap, Quantity, Table
 from vibroimpact.structures.modal_model import ModalModel
 from vibroimpact.units.display import MISSING, column_texts, fixed, text
 
@@ -108,11 +108,12 @@ def mode_title(model: ModalModel, mode: int) -> str:
 class MeasuredTable(NamedTuple):
     """Measured modes beside those of a case.
 
-    `table` is what is shown; `columns` and `rows` are the table of `measured.csv`; and `doubts` is
-    what is not sure.
+    `table` is what is shown; `columns` and `rows` are the table of `measured.csv`; `doubts` is
+    what is not sure; and `quantities` are the main results.
     """
 
     table: Table
     columns: Sequence[str]
     rows: Sequence[Mapping[str, Any]]
     doubts: Sequence[str]
+    quantities: Sequence[Quantity] = ()

@@ -9,7 +9,7 @@ from typing import Any
 from vibroimpact._version import __version__
 from vibroimpact.files.plain_names import one_line
 from vibroimpact.recognition.apply import Recognised
-from vibroimpact.report.report import Column, Note, Report, Section, Table
+from vibroimpact.report.report import Column, Note, Quantity, Report, Section, Table
 from vibroimpact.results.csv_files import write_csv
 
 
@@ -25,11 +25,30 @@ def report_of(recognised: Recognised) -> Report:
             f"{recognised.name}: {len(recognised.probabilities)} signals, classified by "
             f"{recognised.classifier}"
         ),
+        quantities=_answer(recognised),
         sections=(Section("fractions", "Fractions", (fraction_table(recognised), *notes)),),
         warnings=recognised.doubts,
         files={"predictions.csv": partial(_write_predictions, recognised)},
         summary=_summary(recognised),
     )
+
+
+def _answer(recognised: Recognised) -> list[Quantity]:
+    """Return the fraction of each class with its interval, and the accuracy if it is known."""
+    quantities = [
+        Quantity(
+            f"Fraction of {name}",
+            100.0 * fraction.value,
+            "%",
+            interval=(100.0 * fraction.low, 100.0 * fraction.high),
+        )
+        for name, fraction in recognised.fractions.items()
+    ]
+    if recognised.accuracy is not None:
+        note = "by the classes in the data set"
+        accuracy = 100.0 * recognised.accuracy
+        quantities.append(Quantity("Balanced accuracy", accuracy, "%", note=note, figures=3))
+    return quantities
 
 
 def fraction_table(recognised: Recognised) -> Table:

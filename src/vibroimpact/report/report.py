@@ -360,7 +360,10 @@ class Quantity:
     def _range_text(self) -> str:
         """The smallest and the largest value, in digits that tell them apart."""
         size = multiple(self.unit, [self.value, self.largest]).size
-        smallest, largest = column_texts([self.value / size, self.largest / size], _RANGE_FIGURES)
+        ends = [self.value / size, self.largest / size]
+        smallest, largest = column_texts(ends, min(self.figures, _RANGE_FIGURES))
+        if smallest == largest:
+            return self._in_unit(smallest)
         return self._in_unit(f"{smallest} to {largest}")
 
     @property
@@ -402,6 +405,19 @@ class Quantity:
         if self.is_range:
             document["largest"] = self.largest
         return document
+
+
+def finite_interval(low: float, high: float) -> tuple[float, float] | None:
+    """Return an interval as a `Quantity` has it; None if it is not bounded.
+
+    Examples
+    --------
+    >>> finite_interval(0.1, 0.2), finite_interval(0.1, math.inf)
+    ((0.1, 0.2), None)
+    """
+    if math.isfinite(low) and math.isfinite(high):
+        return float(low), float(high)
+    return None
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -20,9 +20,11 @@ from vibroimpact.report.report import (
     Code,
     Explanation,
     Note,
+    Quantity,
     Report,
     Section,
     Table,
+    finite_interval,
     table_of,
 )
 from vibroimpact.results.csv_files import write_columns, write_csv
@@ -96,6 +98,7 @@ def comparison_report(
     """
     return Report(
         title=f"{correlation.case.name or 'A test'}, test and simulation",
+        quantities=[*_agreement(correlation), *answer_of_modes(correlation.modes)],
         sections=sections,
         charts=charts,
         warnings=correlation.doubts,
@@ -108,6 +111,59 @@ def comparison_report(
         summary=summary,
         provenance="the case is case.toml, beside this page.",
     )
+
+
+def _agreement(criteria: Criteria) -> Iterator[Quantity]:
+    """Yield the criterion of the record or response that agrees least."""
+    least = int(np.argmin(criteria.frac))
+    low, high = criteria.band
+    note = f"of {visible(criteria.sensors[least].name)}, from {low:.4g} to {high:.4g} Hz"
+    yield Quantity("Smallest FRAC", float(criteria.frac[least]), note=note, figures=3)
+
+
+def answer_of_modes(modes: Sequence[ModePair]) -> Iterator[Quantity]:
+    """Yield how many modes are paired, and the pairs that differ most.
+
+    Parameters
+    ----------
+    modes : sequence of ModePair
+        The modes of a case beside measured ones.
+    """
+    in_case = sum(pair.number is not None for pair in modes)
+    measured = sum(pair.measured is not None for pair in modes)
+    pairs = [pair for pair in modes if pair.number is not None and pair.measured is not None]
+    note = f"of {in_case} modes of the case in the band and {measured} measured ones"
+    yield Quantity("Paired modes", len(pairs), note=note)
+    if not pairs:
+        return
+    worst = max(pairs, key=lambda pair: abs(pair.frequency_difference))
+    assert worst.measured is not None  # as of all pairs
+    low, high = worst.measured.frequency.interval
+    yield Quantity(
+        "Largest frequency difference",
+        100.0 * worst.frequency_difference,
+        "%",
+        note=f"measured less computed, mode {worst.number} at {worst.frequency:.5g} Hz",
+        interval=finite_interval(
+            100.0 * (low / worst.frequency - 1.0), 100.0 * (high / worst.frequency - 1.0)
+        ),
+    )
+    damped = [pair for pair in pairs if pair.damping_measured]
+    if damped:
+        ratios = [_damping_ratio(pair) for pair in damped]
+        yield Quantity(
+            "Measured over computed damping",
+            min(ratios),
+            note=f"damping ratios of {len(damped)} modes",
+            largest=max(ratios),
+            figures=3,
+        )
+
+
+def _damping_ratio(pair: ModePair) -> float:
+    """Return the measured damping ratio over that of the case."""
+    assert pair.measured is not None  # as of all pairs
+    return pair.measured.damping_ratio.value / pair.damping_ratio
 
 
 def octave_blocks(criteria: Criteria, compared: str) -> tuple[Table, Note]:

@@ -214,11 +214,11 @@ def test_verdicts_of_the_reproduction_fit() -> None:
         lines = shown(terminal_report(report), width)
         assert max(map(len, lines)) <= width
         numbers = _NUMBER.findall(" ".join(lines))
-        # by part, by kind, and the 2 of "Type 2"
+        # the answer of 240 values, by part, by kind, and the 2 of "Type 2"
         assert numbers.count("30") == 2 * 4
-        assert numbers.count("60") == 4 + 4
+        assert numbers.count("60") == 4 + 4 + 4
         assert numbers.count("0") == 4 * 4
-        assert {*numbers} == {"0", "30", "60", "2"}
+        assert {*numbers} == {"0", "30", "60", "240", "2"}
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252", "utf-8"])

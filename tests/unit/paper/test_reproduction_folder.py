@@ -599,6 +599,13 @@ def test_the_command_prints_the_counts(
     by_part, by_kind, note = (
         [*rows] for blank, rows in groupby(lines, key=lambda line: not line.strip()) if not blank
     )
+    answer, by_part = by_part[: len(Verdict)], by_part[len(Verdict) :]
+    assert [re.split(r"  +", row.strip()) for row in answer] == [
+        ["Reproduced", "16", "of 17 printed values"],
+        ["Explained", "0"],
+        ["Fitted", "0"],
+        ["Not reproduced", "1"],
+    ]
     for (head, *_), first in ((by_part, "part"), (by_kind, "kind")):
         assert re.split(r"  +", head.strip()) == [first, *(verdict.value for verdict in Verdict)]
     assert [row.split() for row in by_part[1:]] == [

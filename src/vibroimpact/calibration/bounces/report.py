@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -13,8 +14,18 @@ from vibroimpact._version import __version__
 from vibroimpact.calibration.bounces.charts import bounce_charts
 from vibroimpact.calibration.bounces.rebounds import Rebounds
 from vibroimpact.calibration.bounces.speed_laws import CONSTANT, LINEAR, POWER, Fitted, SpeedLaw
+from vibroimpact.calibration.fit.fitting import half_width
 from vibroimpact.calibration.observed.inputs import inputs_document, inputs_sentence
-from vibroimpact.report.report import Column, Note, Paragraph, Report, Section, Table
+from vibroimpact.report.report import (
+    Column,
+    Note,
+    Paragraph,
+    Quantity,
+    Report,
+    Section,
+    Table,
+    finite_interval,
+)
 from vibroimpact.results.csv_files import write_rows
 from vibroimpact.units.display import MISSING, digits, known_text, known_texts, multiple, text
 
@@ -44,6 +55,7 @@ def report_of(rebounds: Rebounds) -> Report:
     return Report(
         title=f"Bounces in {record.name}",
         answer=f"{len(rebounds.bounces.time)} touches of a bouncing ball.",
+        quantities=[*answer_of_fits(rebounds), _drop_height(rebounds)],
         sections=(fits, impacts),
         charts=bounce_charts(rebounds),
         warnings=rebounds.doubts,
@@ -81,6 +93,35 @@ def impact_table(rebounds: Rebounds) -> Table:
 def law_sentences(rebounds: Fitted) -> list[str]:
     """Return the fits over the approach speed, a sentence each."""
     return [_sentence(law, rebounds.confidence) for law in rebounds.laws]
+
+
+def answer_of_fits(fitted: Fitted) -> Iterator[Quantity]:
+    """Yield the mean restitution, and how it changes with the approach speed, if that is fitted."""
+    for law in fitted.laws:
+        intervals = law.intervals(0.95)
+        if law.name == CONSTANT:
+            interval = finite_interval(*intervals[0])
+            yield Quantity("Restitution", float(law.coefficients[0]), interval=interval)
+        elif law.name == LINEAR:
+            interval = finite_interval(*intervals[1])
+            slope = float(law.coefficients[1])
+            yield Quantity(
+                "Restitution over approach speed",
+                slope,
+                "s/m",
+                note="slope of the linear fit",
+                interval=interval,
+            )
+
+
+def _drop_height(rebounds: Rebounds) -> Quantity:
+    """Return the height of the fall before the first touch."""
+    height = rebounds.drop_height
+    if rebounds.height is not None:
+        return Quantity("Height of the fall", height, "m", note="given")
+    half = half_width(0.95, math.inf) * rebounds.drop_deviation
+    interval = finite_interval(height - half, height + half)
+    return Quantity("Height of the fall", height, "m", interval=interval)
 
 
 def drop_sentence(rebounds: Rebounds) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 
 from vibroimpact._version import __version__
 from vibroimpact.calibration.bounces.charts import restitution_chart
-from vibroimpact.calibration.bounces.report import fits_document, law_sentences
+from vibroimpact.calibration.bounces.report import answer_of_fits, fits_document, law_sentences
 from vibroimpact.calibration.restitutions.restitutions import Restitutions
 from vibroimpact.charts.made import made_charts
 from vibroimpact.contact.speed_function import toml_of
@@ -31,6 +31,7 @@ def report_of(restitutions: Restitutions) -> Report:
     return Report(
         title=f"Restitutions of {Path(restitutions.source).name}",
         answer=status_sentence(restitutions),
+        quantities=list(answer_of_fits(restitutions)),
         sections=(Section("fits", "Fits over the approach speed", fits), rows),
         charts=made_charts({"restitution": partial(restitution_chart, restitutions)}),
         warnings=restitutions.doubts,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -19,7 +20,16 @@ from vibroimpact.paper.report.outline import (
 )
 from vibroimpact.paper.report.reproduction import Reproduction
 from vibroimpact.paper.report_section import Verdict
-from vibroimpact.report.report import Block, Column, Note, Paragraph, Report, Section, Table
+from vibroimpact.report.report import (
+    Block,
+    Column,
+    Note,
+    Paragraph,
+    Quantity,
+    Report,
+    Section,
+    Table,
+)
 from vibroimpact.results.csv_files import write_csv
 
 
@@ -42,6 +52,7 @@ def report_of(reproduction: Reproduction) -> Report:
         opening = (*OPENING, IN_SHORT)
     return Report(
         title=TITLE,
+        quantities=_answer(parts),
         opening=opening,
         sections=[summary, *chapters, *_missing_section(missing), *_counts_sections(parts)],
         files=files,
@@ -53,6 +64,16 @@ def report_of(reproduction: Reproduction) -> Report:
         },
         provenance="made by: vibroimpact reproduce.",
     )
+
+
+def _answer(parts: Mapping[str, RenderedPart]) -> list[Quantity]:
+    """Return how many printed values have each verdict."""
+    counts = verdict_counts(parts).get("all", {})
+    quantities = [Quantity(verdict.capitalize(), number) for verdict, number in counts.items()]
+    if not quantities:
+        return []
+    first, *others = quantities
+    return [replace(first, note=f"of {sum(counts.values()):,} printed values"), *others]
 
 
 def _chapter_section(chapter: str, members: list[RenderedPart]) -> Section:

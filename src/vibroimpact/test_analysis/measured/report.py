@@ -15,13 +15,14 @@ from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Mark, Rug
 from vibroimpact.modes.tables import MeasuredTable
 from vibroimpact.quoting import shortened, visible
-from vibroimpact.report.report import Explanation, Report, Section, Table, table_of
+from vibroimpact.report.report import Explanation, Quantity, Report, Section, Table, table_of
 from vibroimpact.results.csv_files import write_csv
 from vibroimpact.test_analysis.charts import MOST, magnitude_lines, those_drawn
 from vibroimpact.test_analysis.criteria_tables import (
     MODE_COLUMNS,
     MODE_HEADERS,
     TEXTS,
+    answer_of_modes,
     mode_cells,
     mode_record,
     mode_row,
@@ -66,6 +67,7 @@ def report_of(measured: MeasuredModes) -> Report:
     )
     return Report(
         title=f"Measured modes of {Path(sources[0]).stem}",
+        quantities=_answer(measured),
         sections=(modes,),
         charts=made_charts({"responses": partial(_chart, measured)}),
         warnings=measured.doubts,
@@ -73,6 +75,25 @@ def report_of(measured: MeasuredModes) -> Report:
         summary=_summary(measured),
         provenance=f"the frequency responses are those of {', '.join(sources)}.",
     )
+
+
+def _answer(measured: MeasuredModes) -> list[Quantity]:
+    """Return how many modes were measured, and the range of their frequencies and damping."""
+    modes = [pair.measured for pair in measured.modes if pair.measured is not None]
+    low, high = (float(measured.frequency[end]) for end in (0, -1))
+    note = f"from {low:.4g} to {high:.4g} Hz, of {len(measured.responses)} responses"
+    quantities = [Quantity("Modes", len(modes), note=note)]
+    frequencies = [mode.frequency.value for mode in modes]
+    # of a mode that is not separated the damping is not known
+    ratios = [mode.damping_ratio.value for mode in modes if not mode.doubt]
+    for name, values, unit in (
+        ("Frequencies", frequencies, "Hz"),
+        ("Damping ratios", ratios, ""),
+    ):
+        if values:
+            note = f"of {len(values)} modes"
+            quantities.append(Quantity(name, min(values), unit, note=note, largest=max(values)))
+    return quantities
 
 
 def measured_table(measured: MeasuredModes) -> Table:
@@ -100,7 +121,8 @@ def compared_table(measured: MeasuredModes) -> MeasuredTable:
     """Return the modes of a case and measured ones as the folder of the case's modes has them."""
     table = table_of(*mode_cells(measured.modes), TEXTS)
     rows = [mode_record(pair) for pair in measured.modes]
-    return MeasuredTable(table, MODE_COLUMNS, rows, measured.doubts)
+    quantities = list(answer_of_modes(measured.modes))
+    return MeasuredTable(table, MODE_COLUMNS, rows, measured.doubts, quantities)
 
 
 def _write_modes(measured: MeasuredModes, path: Path) -> None:
