@@ -32,6 +32,15 @@ def shipped_cases_document() -> dict[str, Any]:
     return {"cases": cases}
 
 
+DEEDS = {
+    "run": "run it",
+    "sweep": "run the study",
+    "calibrate": "calibrate it",
+    "dataset": "compute the data set",
+}
+"""What the command that a case is meant for does with it."""
+
+
 def command_for(case: dict[str, Any]) -> str:
     """Return the command that a case is meant for: it has a section of its own in the case."""
     if "classes" in case.get("sweep", {}):

@@ -44,7 +44,7 @@ def new(
     """Write a new case file from an existing case. Unused keys are in it as comments."""
     from vibroimpact.cases.reader import load_table
     from vibroimpact.cases.template import case_template
-    from vibroimpact.cli.case_text import command_for
+    from vibroimpact.cli.case_text import DEEDS, command_for
     from vibroimpact.files.atomic_write import write_text_file
     from vibroimpact.files.recover import recover
 
@@ -62,7 +62,7 @@ def new(
     quoted = shlex.quote(str(path))
     command = command_for(load_table(path))
     say(
-        f"wrote {path}; explain it: vibroimpact check {quoted}; {command} it: vibroimpact "
+        f"wrote {path}; explain it: vibroimpact check {quoted}; {DEEDS[command]}: vibroimpact "
         f"{command} {quoted}"
     )
 

@@ -36,14 +36,16 @@ def reproduce(
     computed one.
 
     The report states for each value whether it is reproduced, explained, or not reproduced, and
-    why, and whether it is a result or an input or was inferred or fitted. An interrupted run is
-    continued with the same command.
+    why, and whether it is a result or an input or was inferred or fitted. Parts named by --only are
+    shown, their figures by the names of their files. An interrupted run is continued with the same
+    command.
 
     The parts: table1, section3.1, fig3, section3.2, fig4 to fig8, damping, table2, section4, fig9,
     section5.1, fig10 to fig13, section5.2, fig14 to fig17, section5.3, fig18 to fig23, conclusions,
     recovery, sampling, unresolved, corrections.
     """
     from vibroimpact.paper.report.folder import missing_parts, reproduce_paper
+    from vibroimpact.paper.report.report import report_of_parts
     from vibroimpact.paper.report.reproduction import load_reproduction
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.report.terminal_report import terminal_report
@@ -63,5 +65,8 @@ def reproduce(
             f"-o {shlex.quote(str(output))}{some}",
             130,
         )
-    report = load_reproduction(folder).report
+    reproduction = load_reproduction(folder)
+    report = reproduction.report
+    if names is not None:
+        report = report_of_parts(reproduction, names)
     show_folder(folder, lambda: report.document, lambda: terminal_report(report), as_json=as_json)

@@ -32,7 +32,8 @@ def run(
     ("source", "advice"),
     [
         ("paper:type1-theory", "run it: vibroimpact run mine.toml"),
-        ("paper:sweep", "sweep it: vibroimpact sweep mine.toml"),
+        ("paper:sweep", "run the study: vibroimpact sweep mine.toml"),
+        ("signals:river-plate", "compute the data set: vibroimpact dataset mine.toml"),
         ("paper:calibration", "calibrate it: vibroimpact calibrate mine.toml"),
     ],
 )

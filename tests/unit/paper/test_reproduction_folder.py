@@ -596,10 +596,9 @@ def test_the_command_prints_the_counts(
     )
     title, *lines, last = capsys.readouterr().out.splitlines()
     assert title == "The paper, reproduced"
-    by_part, by_kind, note = (
+    answer, inputs, *_, by_part, by_kind, note = (
         [*rows] for blank, rows in groupby(lines, key=lambda line: not line.strip()) if not blank
     )
-    answer, by_part = by_part[: len(Verdict)], by_part[len(Verdict) :]
     assert [re.split(r"  +", row.strip()) for row in answer] == [
         ["Reproduced", "16", "of 17 printed values"],
         ["Explained", "0"],
@@ -621,7 +620,28 @@ def test_the_command_prints_the_counts(
         ["input", "15", "0", "0", "0"],
     ]
     assert note[0].strip().startswith("Only a result tests the paper.")
+    # the parts that were asked for, whole
+    assert inputs[0].startswith("Table 1")
+    density = next(line for line in inputs if "density of the sphere" in line)
+    assert re.split(r"  +", density.strip())[1].replace("\u00a0", " ") == "1380 kg/m³"
     assert last == f"wrote {tmp_path / 'paper' / 'report.html'}"
+
+
+def test_a_figure_that_is_asked_for_is_named_with_its_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "200")
+    folder = tmp_path / "paper"
+    assert command(monkeypatch, "reproduce", "--only", "fig3,table1", "-o", folder) == 0
+    capsys.readouterr()
+    # of a part that is there beside it nothing is said
+    assert command(monkeypatch, "reproduce", "--only", "fig3", "-o", folder) == 0
+    printed = capsys.readouterr().out
+    file = folder / "figures" / "fig3.png"
+    assert file.is_file()
+    assert f"The figure is {file}." in printed.replace("\n", "")
+    assert "Figure 3" in printed
+    assert "Table 1: the inputs" not in printed
 
 
 @pytest.mark.parametrize(

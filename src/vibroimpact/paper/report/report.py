@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from vibroimpact._version import __version__
+from vibroimpact.files.result_folder import FIGURES
 from vibroimpact.paper.report.blocks import blocks_of
 from vibroimpact.paper.report.counts import kind_counts, verdict_counts
 from vibroimpact.paper.report.markdown_report import TITLE, anchor, markdown_report
@@ -16,6 +17,7 @@ from vibroimpact.paper.report.outline import (
     VALUE_COLUMNS,
     RenderedPart,
     chapters_of,
+    find_parts,
     missing_from,
 )
 from vibroimpact.paper.report.reproduction import Reproduction
@@ -23,6 +25,8 @@ from vibroimpact.paper.report_section import Verdict
 from vibroimpact.report.report import (
     Block,
     Column,
+    Figure,
+    Heading,
     Note,
     Paragraph,
     Quantity,
@@ -80,6 +84,51 @@ def _chapter_section(chapter: str, members: list[RenderedPart]) -> Section:
     """Return a chapter: the texts and charts of its parts."""
     blocks = [block for part in members for block in blocks_of(part.text, part.chart)]
     return Section(anchor(chapter), chapter, blocks, medium="page")
+
+
+_SHOWN_COLUMNS = ("What", "Printed", "Computed", "Difference", "Verdict")
+"""Columns of a table of compared values that a terminal shows; the page has all."""
+
+
+def report_of_parts(reproduction: Reproduction, names: Sequence[str]) -> Report:
+    """Return the report of a reproduction, of which a terminal shows some parts whole.
+
+    Parameters
+    ----------
+    reproduction : Reproduction
+        The reproduction.
+    names : sequence of str
+        Names of parts that it has: their texts and tables are shown, and their figures named with
+        the files.
+    """
+    report = report_of(reproduction)
+    sections = [
+        _terminal_section(part.name, reproduction.parts[part.name], reproduction.path)
+        for part in find_parts(names)
+    ]
+    return replace(report, sections=[*sections, *report.sections])
+
+
+def _terminal_section(name: str, part: RenderedPart, folder: Path) -> Section:
+    """Return a part as a terminal shows it."""
+    blocks: list[Block] = []
+    for block in blocks_of(part.text, part.chart):
+        if isinstance(block, Figure):
+            file = folder / FIGURES / f"{name}.png"
+            blocks.append(Paragraph(f"The figure is {file}."))
+        elif isinstance(block, Table):
+            blocks.append(_without_details(block))
+        elif not isinstance(block, Heading):
+            blocks.append(block)
+    return Section(name, part.title, blocks, medium="terminal")
+
+
+def _without_details(table: Table) -> Table:
+    """Return a table of compared values with its main columns; other tables whole."""
+    shown = [column for column in table.columns if column.heading in _SHOWN_COLUMNS]
+    if len(shown) < len(_SHOWN_COLUMNS):
+        return table
+    return replace(table, columns=shown)
 
 
 def _missing_section(missing: list[str]) -> list[Section]:
