@@ -13,7 +13,7 @@ from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Bars, Map, Points
-from vibroimpact.charts.palette import series
+from vibroimpact.charts.palette import of_class
 
 _MOST_POINTS = 1500
 
@@ -78,9 +78,9 @@ def _impacts(bound: Bound) -> Chart:
     some = np.arange(0, len(falls), max(1, len(falls) // _MOST_POINTS))
     marks = []
     for number, name in enumerate(np.unique(falls.classes).tolist()):
-        of_class = some[falls.classes[some] == name]
+        members = some[falls.classes[some] == name]
         marks.append(
-            Points(falls.impulse[of_class], falls.duration[of_class], name, series(number))
+            Points(falls.impulse[members], falls.duration[members], name, of_class(number))
         )
     panel = Panel(
         Axis("Impulse", "N s", log=True), Axis("Contact time", "s", log=True), tuple(marks)

@@ -38,6 +38,8 @@ class Look:
         Whether symbols are filled with the ground.
     size : float
         Size of symbols on a page [px].
+    size_of_many : float
+        The same where there are many.
     """
 
     light: str
@@ -50,6 +52,7 @@ class Look:
     symbol: str = "circle"
     hollow: bool = False
     size: float = 7.0
+    size_of_many: float = 4.0
 
 
 GROUND = Look("#ffffff", "#14181d")
@@ -68,6 +71,18 @@ _SERIES = (
     Look("#6b6b6b", "#c4c4c4", (10, 2, 2, 2), 1.5, symbol="cross"),
     Look("#c79000", "#ffd454", (4, 3), 1.5, symbol="x"),
     Look("#56a8d8", "#2f9fdd", (1, 1), 1.5, symbol="circle"),
+)
+
+# points of classes differ in symbols and luminance, and are large enough for symbols to be seen
+_CLASSES = (
+    Look("#00204d", "#8ab4ff", symbol="circle", size_of_many=5.5),
+    Look("#d9772f", "#ffb37a", symbol="triangle-up", size_of_many=6.5),
+    Look("#5f8f3e", "#9fd67a", symbol="diamond", size_of_many=6.5),
+    Look("#6b6b6b", "#c4c4c4", symbol="x", size_of_many=5.5),
+    Look("#0072b2", "#4cc3ff", symbol="square", size_of_many=5.5),
+    Look("#cc79a7", "#ffb3d9", symbol="triangle-down", size_of_many=6.5),
+    Look("#1b1b1b", "#e8e8e8", symbol="cross", size_of_many=5.5),
+    Look("#c79000", "#ffd454", symbol="diamond", size_of_many=6.5),
 )
 
 LOOKS: dict[str, Look] = {
@@ -117,6 +132,7 @@ LOOKS: dict[str, Look] = {
     "potential": Look("#d6e6f4", "#2f4a63"),
     "kinetic": Look("#4a8cc7", "#3f86c6", hatch="\\"),
     **{f"series {number}": look for number, look in enumerate(_SERIES)},
+    **{f"class {number}": look for number, look in enumerate(_CLASSES)},
     **{f"thin series {number}": replace(look, width=0.75) for number, look in enumerate(_SERIES)},
     **{
         f"series {number} band": Look(look.light, look.dark, opacity=0.15)
@@ -154,6 +170,17 @@ SEQUENTIAL = (
 
 SHADES = ((0.0, "#6b8599"), (1.0, "#eef2f6"))
 """Colours of a surface from shade to full light."""
+
+
+def of_class(number: int) -> str:
+    """Return the role of the points of a class, by its number; the ninth looks as the first.
+
+    Examples
+    --------
+    >>> of_class(0), of_class(9)
+    ('class 0', 'class 1')
+    """
+    return f"class {number % len(_CLASSES)}"
 
 
 def series(number: int) -> str:

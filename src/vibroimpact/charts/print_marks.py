@@ -275,7 +275,7 @@ class PrintedMarks:
         }
         if len(mark.x) > MANY:
             # small and without edges, so that they can be told apart
-            style["markersize"] = min(2.5, 0.64 * look.size)
+            style["markersize"] = min(0.625 * look.size_of_many, 0.64 * look.size)
             style["markerfacecolor"] = look.light
             style["markeredgewidth"] = 0.0
             style["alpha"] = 0.5

@@ -54,7 +54,7 @@ def points_trace(points: Points) -> dict[str, Any]:
     if len(points.x) > MANY:
         drawn["marker"] = {
             "symbol": LOOKS[points.role].symbol,
-            "size": min(4.0, size),
+            "size": min(LOOKS[points.role].size_of_many, size),
             "color": f"@{points.role}",
             "opacity": 0.6,
             "line": {"width": 0},

@@ -313,8 +313,11 @@
     layout.margin = { l: room, r: narrow ? 8 : 20, t: 30, b: 48 + bar };
     layout.legend = { orientation: "h", x: 0, y: -(chart.pictures ? 20 + bar : 64) / layout.height, yanchor: "top", font: { size: state.paper ? 9 : 11 }, ...(layout.legend || {}) };
     const lines = layout.showlegend ? Math.ceil(entries / Math.max(1, Math.floor(state.width / (state.paper ? 150 : 190)))) : 0;
+    // of several rows the legend is ahead of the first one, above the titles of panels
+    const above = !chart.pictures && chart.rows.length > 1;
+    if (above) Object.assign(layout.legend, { y: 1 + 22 / layout.height, yanchor: "bottom" });
     layout.height += 78 + bar + 22 * lines;
-    layout.margin.b += 22 * lines + (lines ? 12 : 0);
+    layout.margin[above ? "t" : "b"] += 22 * lines + (lines ? 12 : 0);
     layout.dragmode = state.touch ? false : "zoom";
     return layout;
   };

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.charts.palette import SERIES, series
+from vibroimpact.charts.palette import SERIES, of_class
 from vibroimpact.quoting import shortened, visible
 from vibroimpact.studies.computation.study import Study
 from vibroimpact.studies.computation.study_folder import STUDY
@@ -125,7 +125,7 @@ def grouped(
         groups.append(
             Group(
                 name,
-                series(place),
+                of_class(place),
                 chosen,
                 tuple(texts[number] for number in chosen.tolist()),
                 own,

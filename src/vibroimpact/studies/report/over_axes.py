@@ -83,11 +83,13 @@ def _drops(
 ) -> Mark:
     """Return drops as points; few of them with a line where only their keys together change."""
     where = group.places[axis.key]
+    # points of several names are no path
+    is_whole = len(group.chosen) == study.size
     is_path = study.design == "zip" or (len(axes) == 1 and not study.is_grid)
-    if is_path and axis.numeric and study.size <= FEW_DROPS:
+    if is_path and is_whole and axis.numeric and study.size <= FEW_DROPS:
         order = np.argsort(where, kind="stable")
         texts = tuple(group.texts[number] for number in order.tolist())
-        return Line(where[order], height[order], group.name, group.role, marked=True, texts=texts)
+        return Line(where[order], height[order], "", group.role, marked=True, texts=texts)
     return Points(where, height, group.name, group.role, group.texts, group.keys)
 
 
