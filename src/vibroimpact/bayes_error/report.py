@@ -55,9 +55,10 @@ def report_of(bound: Bound) -> Report:
         (
             error_table(bound),
             Note(
-                "Without scatter is the error with the noise, but without the scatter of the "
-                "amplitude. Remaining is the part of the standard deviation of the logarithm that "
-                "the best linear estimate leaves."
+                '"Without scatter" is the error with the noise, but without the scatter of the '
+                'amplitude. "Remaining" is the part of the scatter of a property, the standard '
+                "deviation of its logarithm, that the best linear estimate from the measured "
+                "quantities does not explain."
             ),
             Note(channel_sentences(bound)),
             Note(sampling_sentence(bound)),

@@ -121,7 +121,7 @@ def _check_outside(target: Path, source: Path) -> None:
     if target.resolve() in (path, *path.parents):
         raise InputError(
             f"{target}: {source} lies there, and would be replaced; "
-            "name another place for the result"
+            "name another folder for the result"
         )
 
 

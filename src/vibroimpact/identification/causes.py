@@ -126,9 +126,8 @@ def _sensor_differences(free: SphereFit, number: int, name: str) -> Iterator[Cau
     x, y, _, resonance_deviations = free.setting.deviations[2:].reshape(4, -1)
     distance = float(np.hypot(*setup.moved[number]))
     if distance > max(_LEAST["sensor_place"], _SURE * math.hypot(x[number], y[number])):
-        description = (
-            f"{quoted(name)} lies about {digits(1e3 * distance, 2)} mm from its place in the case"
-        )
+        offset = digits(1e3 * distance, 2)
+        description = f"{quoted(name)} lies about {offset} mm from its position in the case"
         yield Cause(description, "sensor_place", distance)
     gains, gain_deviations = _gains(free)
     gain = float(gains[number])

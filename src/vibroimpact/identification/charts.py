@@ -109,12 +109,12 @@ def _place_chart(identification: Identification) -> Chart:
     marks = (
         Map(search.x, search.y, 1.0 - search.misfit, scale),
         Points(at[:, 0], at[:, 1], "sensors", "sensor", tuple(names)),
-        Points(places[:, 0], places[:, 1], "place of the force", "mark", texts),
+        Points(places[:, 0], places[:, 1], "position of the force", "mark", texts),
     )
     panel = Panel(Axis("x on the plate", "m"), Axis("y on the plate", "m"), marks)
     caption = (
-        "What the best pulse of force at each place explains of the records. Where it is "
-        "high at several places, the records do not tell "
-        "them apart. The place is that of the final fit."
+        "The share of the records' energy that the best pulse of force at each position explains. "
+        "The records do not distinguish positions where it is equally high. The mark is the "
+        "position of the final fit."
     )
-    return Chart("place", "Place of the force", ((panel,),), caption, 4.6)
+    return Chart("place", "Position of the force", ((panel,),), caption, 4.6)

@@ -114,15 +114,15 @@ def _of_place(
     if others:
         yield (
             f"a force at {others} explains the records about as well; add a sensor off the "
-            "axes of symmetry, or give the place"
+            "axes of symmetry, or state the position of the impact"
         )
     low, high = plate.bounds
     fitted = sphere.parameters[:2]
     at_limit = np.minimum(fitted - low, high - fitted) <= _AT_LIMIT * (high - low)
     if place is None and at_limit.any():
         yield (
-            "the place lies at the limit of the search, near the edge of the plate; the true "
-            "one may lie beyond it"
+            "the position found is at the limit of the search, near the edge of the plate; the "
+            "true one may lie beyond it"
         )
 
 
@@ -148,7 +148,7 @@ def _of_misfit(
     if explaining:
         source = "the case"
         if place is not None:
-            source = "the case or the place that was given"
+            source = "the case or the position that was given"
         yield (
             f"{misfit}: a set-up that differs from the case leaves {digits(100.0 * share, 2)} "
             f"% of that: {told(explaining)}; correct {source}, or state "
@@ -158,7 +158,7 @@ def _of_misfit(
     if place is None:
         stated = "the plate, its sensors or the contact"
     else:
-        stated = "the plate, its sensors, the contact or the place"
+        stated = "the plate, its sensors, the contact or the position"
     yield (
         f"{misfit}: either {stated} is not as stated, or the records contain a further impact, or "
         "noise that is not there before first touch, or another sphere fits better; do not use "

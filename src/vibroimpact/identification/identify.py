@@ -323,7 +323,7 @@ def _started(
     low, high = plate.bounds
     if place is not None and not ((low <= place) & (place <= high)).all():
         raise InputError(
-            f"the place ({place[0]:.10g}, {place[1]:.10g}) m is off the plate, or too near its "
+            f"the position ({place[0]:.10g}, {place[1]:.10g}) m is off the plate, or too near its "
             f"edge; x must be from {low[0]:.10g} to {high[0]:.10g} m, and y from "
             f"{low[1]:.10g} to {high[1]:.10g} m"
         )
@@ -341,7 +341,7 @@ def _started(
     if pulse.spread > _VAGUE:
         raise InputError(
             "the records do not determine the duration of the contact: the standard deviation of "
-            f"its logarithm is {digits(pulse.spread, 2)}, from what the best pulse leaves of them; "
+            f"its logarithm is {digits(pulse.spread, 2)}, by the residual of the best pulse; "
             "measure with less noise, or check that they are of an impact on the plate of the case"
         )
     return measured, search

@@ -156,7 +156,7 @@ def _of_gains(acquired: Acquired, delay: Delay, early: str) -> Iterator[str]:
     for row in np.flatnonzero(doubtful):
         yield (
             f"the record {quoted(acquired.sensors[row].name)} is {gain[row]:.3g} times its "
-            f"simulation {early}: check its sensitivity and place, and the damping of the case"
+            f"simulation {early}: check its sensitivity and position, and the damping of the case"
         )
 
 

@@ -93,7 +93,7 @@ def test_swept_noise_is_in_the_samples_as_stated(study: vi.studies.Study) -> Non
 
 
 def test_keys_have_units_and_words(study: vi.studies.Study) -> None:
-    assert study.meanings["sensors.a1.position.x"] == ("m", "place of the sensor, x")
+    assert study.meanings["sensors.a1.position.x"] == ("m", "position of the sensor, x")
     assert study.meanings["sensors.g.2.amplifier.noise"][0] == "V"
 
 

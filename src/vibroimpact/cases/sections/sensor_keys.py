@@ -16,7 +16,7 @@ from vibroimpact.errors import InputError, choices
 from vibroimpact.quoting import quoted
 
 _NUMBERS = {
-    "position": {part: Quantity("m", f"place of the sensor, {part}") for part in "xy"},
+    "position": {part: Quantity("m", f"position of the sensor, {part}") for part in "xy"},
     "direction": {part: Quantity("", f"{part} of its direction") for part in "xyz"},
 }
 """The lists of numbers that a sensor has."""

@@ -157,5 +157,5 @@ def _caption(study: Study, axes: list[StudyAxis]) -> str:
         band = "; the line is the median of drops with the same value"
     first = ""
     if len(axes) > MOST_AXES:
-        first = f" Drawn are the first {MOST_AXES} of {len(axes)} keys."
+        first = f" The first {MOST_AXES} of {len(axes)} keys are drawn."
     return f"{some}{blocks}, over each key{band}.{first} {keys_told(axes[:MOST_AXES])}"
