@@ -275,6 +275,25 @@
     return [low, high];
   };
 
+  const TITLE = 260;        // width that the title of a panel takes beside a legend, at most [px]
+  const SYMBOL = 40;        // width of a symbol of a legend [px]
+
+  // Where each row of a single panel names marks of its own, give it a legend beside its title; return whether it is so.
+  const giveRowsLegends = (chart, layout, state, data) => {
+    if (state.paper || state.width < STACKED || chart.rows.length < 2 || chart.rows.some((row) => row.length !== 1)) return false;
+    const named = data.filter((trace) => trace.legendgroup);
+    const rows = chart.rows.map(([[suffix]]) => ({ suffix, entries: named.filter((trace) => trace.yaxis === `y${suffix}`) }));
+    const groups = rows.map(({ entries }) => [...new Set(entries.map((trace) => trace.legendgroup))]);
+    const wide = rows.some(({ entries }) => entries.reduce((sum, trace) => sum + SYMBOL + LETTER * (trace.showlegend ? trace.name.length : -SYMBOL / LETTER), TITLE) > state.width);
+    if (wide || groups.some((of) => !of.length) || new Set(groups.flat()).size < groups.flat().length) return false;
+    rows.forEach(({ suffix, entries }, row) => {
+      const name = row ? `legend${row + 1}` : "legend";
+      for (const trace of entries) trace.legend = name;
+      layout[name] = { orientation: "h", x: 1, xanchor: "right", y: layout[`yaxis${suffix}`].domain[1] + 2 / layout.height, yanchor: "bottom", font: { size: 11 } };
+    });
+    return true;
+  };
+
   const layoutOf = (chart, frames, ranges, state, data) => {
     const entries = data.filter((trace) => trace.showlegend === true).length;
     const layout = { ...chart.layout, ...state.colouring.layout };
@@ -312,10 +331,10 @@
     layout.hoverlabel = { bgcolor: "@ground", bordercolor: "@soft", font: { color: "@ink" } };
     layout.margin = { l: room, r: narrow ? 8 : 20, t: 30, b: 48 + bar };
     layout.legend = { orientation: "h", x: 0, y: -(chart.pictures ? 20 + bar : 64) / layout.height, yanchor: "top", font: { size: state.paper ? 9 : 11 }, ...(layout.legend || {}) };
-    const lines = layout.showlegend ? Math.ceil(entries / Math.max(1, Math.floor(state.width / (state.paper ? 150 : 190)))) : 0;
+    const lines = layout.showlegend && !giveRowsLegends(chart, layout, state, data) ? Math.ceil(entries / Math.max(1, Math.floor(state.width / (state.paper ? 150 : 190)))) : 0;
     // of several rows the legend is ahead of the first one, above the titles of panels
     const above = !chart.pictures && chart.rows.length > 1;
-    if (above) Object.assign(layout.legend, { y: 1 + 22 / layout.height, yanchor: "bottom" });
+    if (above && lines) Object.assign(layout.legend, { y: 1 + 22 / layout.height, yanchor: "bottom" });
     layout.height += 78 + bar + 22 * lines;
     layout.margin[above ? "t" : "b"] += 22 * lines + (lines ? 12 : 0);
     layout.dragmode = state.touch ? false : "zoom";
