@@ -112,6 +112,7 @@ LOOKS: dict[str, Look] = {
     "sphere": Look("#b9b2a7", "#8b857b", width=0.9),
     "support": Look("#6b6b6b", "#9a9a9a", width=0.8, hatch="/"),
     "held": Look("#444444", "#bbbbbb", width=0.8, opacity=0.55),
+    "held nodes": Look("#444444", "#bbbbbb", symbol="square", size=3.0),
     "sensor": Look("#c79000", "#ffd454", symbol="triangle-up"),
     "lower": Look("#b3400e", "#ff9a62", hatch="/"),
     # edges on facets, which are light on any ground

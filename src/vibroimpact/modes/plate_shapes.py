@@ -13,7 +13,7 @@ from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Panel
 from vibroimpact.charts.marks import Label, Line, Map, Mark, Outline, Points
 from vibroimpact.charts.outlines import AT_REST, on_supports
-from vibroimpact.modes.supports import support_outlines
+from vibroimpact.modes.supports import held_nodes, support_outlines
 from vibroimpact.modes.tables import mode_title
 from vibroimpact.quoting import visible
 from vibroimpact.results.surface_grid import SurfaceGrid, surface_grid
@@ -101,6 +101,9 @@ def _plate_marks(body: BodyModes) -> list[Mark]:
     marks: list[Mark] = [Line(*outline(mesh))]
     for x, y in support_outlines(body.body.recipe.supports, mesh):
         marks.append(Outline(x, y, name="support", role="held"))
+    held = held_nodes(body.body.recipe.supports, mesh)
+    if len(held):
+        marks.append(Points(held[:, 0], held[:, 1], "held nodes", "held nodes"))
     (contact_x, contact_y), _ = contact_place(body)
     marks.append(Points(np.array([contact_x]), np.array([contact_y]), "contact point"))
     sensors = sensor_places(body)

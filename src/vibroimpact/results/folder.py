@@ -195,6 +195,7 @@ def _result_from(
         {body: dict(summary[body]) for body in ("sphere", "plate") if body in summary},
         groups["sensors"],
         groups["deflection"]["deflection"],
+        groups["plate"]["shape"],
     )
 
 

@@ -18,6 +18,7 @@ from vibroimpact.files.check_sums import DamageError
 from vibroimpact.files.hdf5 import PACKED, chunk_shape, members, new_array, new_hdf5, read_array
 from vibroimpact.files.plain_names import plain_names
 from vibroimpact.results.deflection import Deflection
+from vibroimpact.results.plate_shape import PlateShape
 from vibroimpact.results.result import Result
 
 _BLOCK = 2**20  # sample times that are computed and written at once
@@ -26,7 +27,8 @@ _BLOCK = 2**20  # sample times that are computed and written at once
 def write_groups(result: Result, path: Path) -> None:
     """Write a result to a NetCDF-4 file.
 
-    It has groups for impacts, history and energy, and for signals and deflection if there are any.
+    It has groups for impacts, history and energy, and for signals, deflection and the shape
+    of the plate if there are any.
     """
     with new_hdf5(path) as file:
         file.attrs["title"] = result.name
@@ -43,6 +45,7 @@ def write_groups(result: Result, path: Path) -> None:
             variable.attrs["units"] = "J" if name.endswith("_J") else "1"
         write_signals(file, result.signals)
         write_deflection(file, result.deflection)
+        _write_plate_shape(file, result.plate_shape)
 
 
 def read_groups(path: Path) -> dict[str, dict[str, Any]]:
@@ -54,7 +57,8 @@ def read_groups(path: Path) -> dict[str, dict[str, Any]]:
     -------
     dict of str to dict
         "impacts", "history" and "energy": arrays by column name; "sensors": signals by sensor name;
-        and "deflection": the deflection, or None, under the key "deflection".
+        "deflection": the deflection, or None, under the key "deflection"; and "plate": the shape of
+        a plate whose mesh was brought, or None, under the key "shape".
 
     Raises
     ------
@@ -71,6 +75,7 @@ def read_groups(path: Path) -> dict[str, dict[str, Any]]:
             groups[group] = {name: _numbers(variable) for name, variable in variables.items()}
         groups["sensors"] = dict(read_signals(file))
         groups["deflection"] = {"deflection": read_deflection(file)}
+        groups["plate"] = {"shape": _read_plate_shape(file)}
         return groups
 
 
@@ -250,6 +255,38 @@ def read_deflection(file: h5py.File) -> Deflection | None:
     ):
         raise DamageError("the sizes of the variables of deflection do not agree")
     return deflection
+
+
+_SHAPES = {
+    "above": (2, "x and y of the outline of the upper side, closed lines followed by NaN"),
+    "below": (2, "x and y of the outline of the lower side, closed lines followed by NaN"),
+    "side": (2, "x and z of the outline seen along y, closed lines followed by NaN"),
+    "held": (3, "nodes of the sets that are held"),
+    "levels": (2, "lowest and highest z that each support holds"),
+    "sensors": (2, "x and y of the sensors"),
+}
+"""Arrays of the shape of a plate: their columns, and what they are."""
+
+
+def _write_plate_shape(file: h5py.File, shape: PlateShape | None) -> None:
+    """Write the shape of a plate as the group `plate`, unless it is None."""
+    if shape is None:
+        return
+    group = file.create_group("plate", track_order=True)
+    for name, (_, meaning) in _SHAPES.items():
+        _describe(new_array(group, f"{name}_m", getattr(shape, name)), "m", meaning)
+
+
+def _read_plate_shape(file: h5py.File) -> PlateShape | None:
+    """Return the shape of a plate; None if the file has none."""
+    if "plate" not in file:
+        return None
+    variables = members(file["plate"])
+    arrays = {name: _numbers(variables[f"{name}_m"]) for name in _SHAPES}
+    for name, (columns, _) in _SHAPES.items():
+        if arrays[name].ndim != 2 or arrays[name].shape[1] != columns:
+            raise DamageError(f"plate/{name}_m does not have {columns} columns")
+    return PlateShape(**arrays)
 
 
 def _describe(variable: h5py.Dataset, unit: str, meaning: str) -> None:

@@ -29,6 +29,7 @@ from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.results.deflection import Deflection, deflection_of
 from vibroimpact.results.fine_history import fine_history
 from vibroimpact.results.peaks import Peaks, peaks_of
+from vibroimpact.results.plate_shape import PlateShape, plate_shape_of
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,8 @@ class Result(Reported, reported_in="vibroimpact.runs.report"):
         Sensor signals, by sensor name.
     deflection : Deflection, optional
         Deflection of the plate's upper side at selected times.
+    plate_shape : PlateShape, optional
+        Outlines of a plate whose mesh was brought.
 
     Examples
     --------
@@ -89,6 +92,7 @@ class Result(Reported, reported_in="vibroimpact.runs.report"):
     peaks: Mapping[str, Peaks] = field(default_factory=dict)
     signals: Mapping[str, Signal] = field(default_factory=dict)
     deflection: Deflection | None = None
+    plate_shape: PlateShape | None = None
 
     @property
     def vibrates(self) -> bool:
@@ -274,4 +278,5 @@ def bare_result(
         peaks=peaks,
         signals=signals,
         deflection=deflection,
+        plate_shape=plate_shape_of(response),
     )

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vibroimpact.arrays import Bools, Floats, Integers
 from vibroimpact.structures.finite_elements.mesh import Mesh
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
+
+_Values = TypeVar("_Values", bound=NDArray[np.floating[Any]])
 
 POINTS = 3000
 """Approximate number of grid points by default."""
@@ -96,6 +99,41 @@ def surface_grid(mesh: Mesh, points: int = POINTS) -> SurfaceGrid:
     )
     on_body = np.isfinite(height).reshape(rows, columns)
     return SurfaceGrid(x, y, csr_array(from_vertices @ from_nodes), on_body)
+
+
+def beyond_edge(values: _Values, steps: int = 2) -> _Values:
+    """Return values on a grid that are continued outside of the body, where they are NaN.
+
+    A picture cuts them along the outline, which lies between grid points.
+
+    Parameters
+    ----------
+    values : array, shape (..., rows, columns)
+        The values.
+    steps : int, default 2
+        Number of grid steps by which they are continued, by the mean of their neighbours.
+
+    Examples
+    --------
+    >>> beyond_edge(np.array([[1.0, 3.0, np.nan, np.nan, np.nan]])).tolist()
+    [[1.0, 3.0, 3.0, 3.0, nan]]
+    """
+    rows, columns = values.shape[-2:]
+    continued = values.copy()
+    for _ in range(steps):
+        padding = [(0, 0)] * (values.ndim - 2) + [(1, 1), (1, 1)]
+        around = np.pad(continued, padding, constant_values=np.nan)
+        is_known = np.isfinite(around)
+        total = np.zeros_like(continued)
+        count = np.zeros(continued.shape, dtype=int)
+        for row in range(3):
+            for column in range(3):
+                window = (..., slice(row, row + rows), slice(column, column + columns))
+                total += np.where(is_known[window], around[window], 0.0)
+                count += is_known[window]
+        outside = np.isnan(continued) & (count > 0)
+        continued[outside] = total[outside] / count[outside]
+    return continued
 
 
 def _uppermost(

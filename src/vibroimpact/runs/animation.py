@@ -14,7 +14,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle, Ellipse
+from matplotlib.patches import Circle, Ellipse, PathPatch
+from matplotlib.path import Path
 from numpy.typing import NDArray
 from PIL import Image
 
@@ -24,6 +25,7 @@ from vibroimpact.charts.print_style import print_style
 from vibroimpact.report.projection import TILT, depth, project
 from vibroimpact.results.deflection import Deflection
 from vibroimpact.results.result import Result
+from vibroimpact.results.surface_grid import beyond_edge
 from vibroimpact.runs.chart_data import touch_height
 from vibroimpact.runs.scene import exaggeration
 from vibroimpact.units.display import fixed, text
@@ -93,8 +95,11 @@ class _AnimationScene:
         self.factor = exaggeration(deflection)
         self.radius = touch_height(result)
         self.contact = np.array(deflection.contact[0]), np.array(deflection.contact[1])
+        self.outline = None
+        if result.plate_shape is not None:
+            self.outline = result.plate_shape.above
         self.touch = float(result.impacts["time_s"][0])
-        skip = max(1, round(max(len(deflection.x), len(deflection.y)) / _CELLS))
+        skip = self.skip = max(1, round(max(len(deflection.x), len(deflection.y)) / _CELLS))
         self.columns, self.rows = (
             np.unique(np.append(np.arange(0, len(side), skip), len(side) - 1))
             for side in (deflection.x, deflection.y)
@@ -114,6 +119,9 @@ class _AnimationScene:
         most = self.factor * float(np.nanmax(np.abs(self.deflection.height)))
         self.plate = PolyCollection(
             [], cmap=_MAP, norm=Normalize(-most, most), edgecolors="#00000030", linewidths=0.3
+        )
+        self.edge = PathPatch(
+            Path(np.zeros((1, 2))), facecolor="none", edgecolor=INK.light, linewidth=0.6
         )
         self.shadow = Ellipse(
             (0.0, 0.0),
@@ -141,13 +149,13 @@ class _AnimationScene:
         phrase = f"plate's deflection magnified {self.factor:g} times; ball and gap to scale"
         figure.text(0.03, 0.045, phrase, fontsize=8, color=INK.light)
         figure.text(0.97, 0.045, "red up, blue down", fontsize=8, color=INK.light, ha="right")
-        for artist in (self.plate, self.shadow, self.ball, self.shine):
+        for artist in (self.plate, self.edge, self.shadow, self.ball, self.shine):
             artist.set_animated(True)
         self.clock.set_animated(True)
         self.axes.add_collection(self.plate, autolim=False)
-        for patch in (self.shadow, self.ball, self.shine):
+        for patch in (self.edge, self.shadow, self.ball, self.shine):
             self.axes.add_patch(patch)
-        return [self.plate, self.shadow, self.ball, self.shine, self.clock]
+        return [self.plate, self.edge, self.shadow, self.ball, self.shine, self.clock]
 
     def _set_limits(self) -> None:
         deflection = self.deflection
@@ -176,8 +184,11 @@ class _AnimationScene:
     def frame(self, number: int) -> NDArray[np.uint8]:
         """Return a frame as an image, (height, width, 3)."""
         deflection = self.deflection
-        drawn_height = deflection.height[number][np.ix_(self.rows, self.columns)]
-        height = self.factor * drawn_height.astype(float)
+        drawn_height = deflection.height[number].astype(float)
+        if self.outline is not None:
+            drawn_height = beyond_edge(drawn_height, self.skip)
+            self._cut(drawn_height)
+        height = self.factor * drawn_height[np.ix_(self.rows, self.columns)]
         corners = np.stack(project(self.x, self.y, height), axis=-1)
         cells: Any = np.stack(_at_corners_of_cells(corners), axis=2).reshape(-1, 4, 2)
         mean = np.mean(_at_corners_of_cells(height), axis=0).ravel()
@@ -194,6 +205,22 @@ class _AnimationScene:
         for artist in self.movers:
             artist.draw(renderer)
         return np.array(self.canvas.buffer_rgba())[..., :3]  # type: ignore[no-untyped-call]
+
+    def _cut(self, height: Floats) -> None:
+        """Cut the plate along its outline, on the deformed surface, and draw that."""
+        assert self.outline is not None  # checked by the caller
+        x, y = self.outline.T
+        columns = np.abs(self.deflection.x[:, None] - x).argmin(axis=0)
+        rows = np.abs(self.deflection.y[:, None] - y).argmin(axis=0)
+        at_outline = np.nan_to_num(self.factor * height[rows, columns])
+        points = np.stack(project(x, y, at_outline), axis=-1)
+        is_gap = np.isnan(x)
+        codes = np.full(len(x), Path.LINETO, dtype=Path.code_type)
+        codes[0] = Path.MOVETO
+        codes[1:][is_gap[:-1]] = Path.MOVETO
+        path = Path(points[~is_gap], codes[~is_gap])
+        self.edge.set_path(path)
+        self.plate.set_clip_path(path, self.axes.transData)
 
     def _move_ball(self, number: int) -> None:
         """Move ball, shine and shadow to where they are in a frame."""

@@ -4,32 +4,23 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Label, Line, Map, Mark, Outline, Points
-from vibroimpact.charts.outlines import AT_REST, on_supports
-from vibroimpact.quoting import shortened, visible
+from vibroimpact.charts.outlines import AT_REST, inside, on_supports
 from vibroimpact.results.deflection import Deflection
 from vibroimpact.results.result import Result
-from vibroimpact.runs.supports import Extent, plate_extent, support_outlines
+from vibroimpact.results.surface_grid import beyond_edge
+from vibroimpact.runs.sensor_marks import sensor_marks
+from vibroimpact.runs.supports import held_nodes, support_outlines
 from vibroimpact.units.display import digits, multiple, text
 
 _COLUMNS = 3
 _ROWS = 2
 
-_MOST_NAMED = 12
-"""Places of sensors that are named; the names of more would cover each other."""
-
-_MOST_LETTERS = 20
-_FEWEST_LETTERS = 8
-"""Letters of a name: the most, and the fewest to which it is shortened."""
-
-_ACROSS = 38
-_SHAPE = 1.6
-"""Letters that fit across a map in print, and its length over its width from which on a
-map is narrower than its place.
-"""
+_FINER = 3
+"""Points of a map of a plate of any shape per grid step of its deflection."""
 
 _ROUNDING = 1e-9
 """Relative to the largest deflection of all maps: smaller values are drawn as zero."""
@@ -57,9 +48,8 @@ def deflection_chart(result: Result, caption: str) -> Chart:
         low, high = (digits(float(pick(height)) / unit.size, 2) for pick in (np.nanmin, np.nanmax))
         title = f"{text(float(deflection.time[frame]) - touch, 's', 3)} after first touch"
         least_and_most = Label(0.5, 0.0, f"{low} to {high} {unit.unit}", "below", corner=True)
-        map_ = Map(
-            deflection.x, deflection.y, height, scale, diverging=True, contours=True, cells=False
-        )
+        x, y, height = _cut(result, deflection.x, deflection.y, height)
+        map_ = Map(x, y, height, scale, diverging=True, contours=True, cells=False)
         panels.append(
             Panel(across, up, (map_, *plate_marks(result), least_and_most), title, picture=True)
         )
@@ -70,6 +60,30 @@ def deflection_chart(result: Result, caption: str) -> Chart:
     return Chart(
         "deflection", "Deflection of the plate from above", rows, caption, height=2.3 * shape + 0.2
     )
+
+
+def _cut(result: Result, x: Floats, y: Floats, height: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return a map that reaches to the outline of the plate, which lies between grid points: on a
+    finer grid, with NaN outside. That of a plate whose mesh was not brought stays as it is.
+    """
+    if result.plate_shape is None:
+        return x, y, height
+    fine_x, fine_y = (
+        np.linspace(side[0], side[-1], _FINER * (len(side) - 1) + 1) for side in (x, y)
+    )
+    continued = beyond_edge(height)
+    along_x = np.array([np.interp(fine_x, x, row) for row in continued])
+    fine = np.array([np.interp(fine_y, y, column) for column in along_x.T]).T
+    fine[~_on_plate(result.plate_shape.above, fine_x, fine_y)] = np.nan
+    return fine_x, fine_y, fine
+
+
+def _on_plate(outline: Floats, x: Floats, y: Floats) -> Bools:
+    """Return which points of a grid lie on a plate; those on its last lines belong to it."""
+    is_inside = inside(outline, x, y)
+    is_inside[:, -1] = is_inside[:, -2]
+    is_inside[-1] = is_inside[-2]
+    return is_inside
 
 
 def chosen_frames(result: Result, deflection: Deflection) -> list[int]:
@@ -90,10 +104,14 @@ def plate_marks(result: Result) -> tuple[Mark, ...]:
     """
     deflection = result.deflection
     assert deflection is not None  # checked by the caller
-    marks: list[Mark] = [Line(*_edge(deflection.x, deflection.y), role="main")]
+    edge = _edge(deflection.x, deflection.y)
+    if result.plate_shape is not None:
+        edge = (result.plate_shape.above[:, 0], result.plate_shape.above[:, 1])
+    marks: list[Mark] = [Line(*edge, role="main")]
     marks += [
         Outline(*outline, name="support", role="held") for outline in support_outlines(result)
     ]
+    marks += held_nodes(result, (0, 1))
     marks.append(
         Points(
             np.array([deflection.contact[0]]),
@@ -102,67 +120,8 @@ def plate_marks(result: Result) -> tuple[Mark, ...]:
             "mark",
         )
     )
-    return (*marks, *sensor_marks(result))
+    return (*marks, *sensor_marks(result, (*deflection.contact, 0.0)))
 
 
 def _edge(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     return x[[0, -1, -1, 0, 0]], y[[0, 0, -1, -1, 0]]
-
-
-def sensor_marks(result: Result) -> tuple[Mark, ...]:
-    """Return the sensors seen from above, with the names of those that stand apart; of
-    many none.
-    """
-    placed = sensor_places(result)
-    if not placed:
-        return ()
-    names, x, y = zip(*placed, strict=True)
-    marks: list[Mark] = [
-        Points(
-            np.array(x),
-            np.array(y),
-            "sensor",
-            "sensor",
-            texts=tuple(shortened(visible(name), 60) for name in names),
-        )
-    ]
-    together: dict[tuple[float, float], list[str]] = {}
-    for name, *place in placed:
-        together.setdefault((place[0], place[1]), []).append(name)
-    if len(together) <= _MOST_NAMED:
-        labels = (
-            _label(place, visible(", ".join(names)), plate_extent(result))
-            for place, names in together.items()
-        )
-        marks += [label for label in labels if label.words]
-    return tuple(marks)
-
-
-def _label(place: tuple[float, float], name: str, extent: Extent | None) -> Label:
-    """Return the name of a sensor on the side where the edge is farther, no longer than
-    what fits there; none where too little does.
-    """
-    if extent is None:
-        return Label(*place, shortened(name, _MOST_LETTERS), "left")
-    (left, right), (front, back) = extent.x, extent.y
-    before = place[0] - left
-    after = right - place[0]
-    across = _ACROSS * min(1.0, _SHAPE * (right - left) / (back - front))
-    room = min(int(across * max(before, after) / (right - left)) - 1, _MOST_LETTERS)
-    side = "left" if before <= after else "right"
-    if len(name) <= room:
-        return Label(*place, name, side)
-    if room < _FEWEST_LETTERS:
-        return Label(*place, "", side)
-    return Label(*place, shortened(name, room), side)
-
-
-def sensor_places(result: Result) -> list[tuple[str, float, float]]:
-    """Return name, x and y [m] of the sensors whose positions the case gives as coordinates."""
-    sensors = result.case.get("sensors", [])
-    placed = [(sensor["name"], sensor["position"]) for sensor in sensors]
-    return [
-        (name, float(place[0]), float(place[1]))
-        for name, place in placed
-        if not isinstance(place, str)
-    ]

@@ -13,7 +13,7 @@ from vibroimpact.charts.marks import Label, Line, Mark, Outline, Points
 from vibroimpact.charts.outlines import disc
 from vibroimpact.results.result import Result
 from vibroimpact.runs.setup import dimension, drawn_radius
-from vibroimpact.runs.supports import plate_extent
+from vibroimpact.runs.supports import plate_extent, plate_outline
 from vibroimpact.units.display import brief
 
 _APART = 0.04
@@ -54,9 +54,7 @@ def path_chart(result: Result, history: Mapping[str, Floats], caption: str) -> C
     marks: list[Mark] = []
     if extent is not None:
         (left, right), (front, back) = extent.x, extent.y
-        marks.append(
-            Outline(np.array([left, right, right, left]), np.array([front, front, back, back]))
-        )
+        marks.append(plate_outline(result, extent))
     else:
         (left, right), (front, back) = (
             (float(along.min()), float(along.max())) for along in (x, y)

@@ -8,9 +8,10 @@ import numpy as np
 
 from vibroimpact.results.deflection import Deflection
 from vibroimpact.results.result import Result
+from vibroimpact.results.surface_grid import beyond_edge
 from vibroimpact.runs.chart_data import touch_height
-from vibroimpact.runs.deflection_chart import sensor_places
 from vibroimpact.runs.oblique_chart import moves_along
+from vibroimpact.runs.sensor_marks import sensor_places
 from vibroimpact.runs.supports import support_outlines
 
 HEIGHT = 0.16
@@ -49,14 +50,22 @@ def scene_of(result: Result) -> dict[str, Any]:
         frames, since first touch; `sphere` and `contact_height`: height of the sphere's centre and
         of the contact point in each frame; `contact`: its place; `radius`; `exaggeration` of the
         deflection, `gap_scale` of the gap between them; `supports`: their outlines; `sensors`:
-        their names and places.
+        their names and places. Of a plate whose mesh was brought also `outline`, x and y of the
+        closed lines around it, each followed by NaN, with heights a little beyond them; and `held`,
+        the held nodes of sets.
     """
     deflection = result.deflection
     assert deflection is not None  # checked by the caller
+    height = deflection.height
+    shape = {}
+    if result.plate_shape is not None:
+        height = beyond_edge(height)
+        shape = {"outline": result.plate_shape.above, "held": result.plate_shape.held}
     return {
         "x": deflection.x,
         "y": deflection.y,
-        "height": deflection.height,
+        "height": height,
+        **shape,
         "time": deflection.time - float(result.impacts["time_s"][0]),
         "sphere": deflection.sphere_position,
         "contact_height": deflection.contact_deflection,

@@ -19,17 +19,20 @@ from vibroimpact.contact.speed_function import of_table
 from vibroimpact.dynamics.sensors.instruments.registry import instruments
 from vibroimpact.quoting import shortened, visible
 from vibroimpact.results.result import Result
+from vibroimpact.results.single_supports import single_supports
 from vibroimpact.runs.below import body_below, level_below
 from vibroimpact.runs.chart_data import touch_height
-from vibroimpact.runs.deflection_chart import sensor_marks
+from vibroimpact.runs.sensor_marks import sensor_marks
 from vibroimpact.runs.supports import (
     Extent,
+    held_nodes,
     plate_extent,
+    plate_outline,
     support_outlines,
     support_words,
     supports_from_the_side,
 )
-from vibroimpact.units.display import digits, multiple
+from vibroimpact.units.display import brief, digits, multiple
 
 _TURN = np.linspace(0.0, 2.0 * np.pi, 61)
 _THIN = 0.015
@@ -77,10 +80,21 @@ def _not_to_scale(result: Result, extent: Extent | None) -> list[str]:
         things.append("the sphere, whose radius is not given")
     if extent is None:
         return [*things, "the plate, whose size is not given"]
-    things.append("the depth of the supports")
-    if not np.isfinite(extent.thickness):
+    things.append(_supports_not_to_scale(result))
+    if not np.isfinite(extent.thickness) and result.plate_shape is None:
         things.append("the thickness of the plate, which is not given")
     return things
+
+
+def _supports_not_to_scale(result: Result) -> str:
+    """Return what of the supports is not drawn to scale: points and lines have no width."""
+    is_narrow = any(
+        support["type"] in ("edge", "point", "spring") and not support.get("radius")
+        for support in single_supports(result.case)
+    )
+    if is_narrow and result.case["plate"].get("model") != "rigid":
+        return "the depth of the supports, and the width of those of edges and points"
+    return "the depth of the supports"
 
 
 def drawn_radius(result: Result) -> float:
@@ -123,6 +137,8 @@ def _from_the_side(result: Result, extent: Extent | None) -> Panel:
         marks = _plate(result, around, dimensioned=extent is not None)
         half = 0.5 * (around.x[1] - around.x[0])
     high = max(3.4 * radius, 0.42 * half)
+    if result.plate_shape is not None:  # parts of it may stand higher than the contact point
+        high = max(high, float(result.plate_shape.high[2]) + 2.0 * radius)
     marks += [
         Line(np.array([at, at]), np.array([0.0, high - radius]), role="dotted"),
         Outline(at + radius * np.cos(_TURN), high + radius * np.sin(_TURN), role="sphere"),
@@ -147,22 +163,30 @@ def _sphere_below(result: Result, radius: float) -> list[Mark]:
 
 def _plate(result: Result, extent: Extent, *, dimensioned: bool) -> list[Mark]:
     left, right = extent.x
-    is_thickness_known = bool(np.isfinite(extent.thickness))
     thickness = extent.thickness
-    if not is_thickness_known:
+    words = f"{as_given(thickness, 'm')} thick"
+    if not np.isfinite(thickness):
         thickness = _THIN * extent.longer
-    marks: list[Mark] = [
-        Outline(np.array([left, right, right, left]), np.array([0.0, 0.0, -thickness, -thickness]))
-    ]
-    marks += supports_from_the_side(result, extent, thickness)
+        words = ""
+    top = 0.0
+    profile = Outline(
+        np.array([left, right, right, left]), np.array([0.0, 0.0, -thickness, -thickness])
+    )
+    shape = result.plate_shape
+    if shape is not None:
+        top = float(shape.high[2])
+        thickness = -float(shape.low[2])
+        words = f"{brief(top + thickness, 'm')} high"
+        profile = Outline(*shape.side.T)
+    marks: list[Mark] = [profile, *supports_from_the_side(result, extent, thickness)]
+    marks += held_nodes(result, (0, 2))
     if dimensioned:
         outlines = [mark for mark in marks if isinstance(mark, Outline)]
-        low = min(float(outline.y.min()) for outline in outlines) - 0.04 * (right - left)
-        beside = max(float(outline.x.max()) for outline in outlines)
+        low = min(float(np.nanmin(outline.y)) for outline in outlines) - 0.04 * (right - left)
+        beside = max(float(np.nanmax(outline.x)) for outline in outlines)
         marks += dimension((left, low), (right, low), as_given(right - left, "m"), "below")
-        if is_thickness_known:
-            words = f"{as_given(thickness, 'm')} thick"
-            marks.append(Label(beside, -0.5 * thickness, words, "left"))
+        if words:
+            marks.append(Label(beside, 0.5 * (top - thickness), words, "left"))
     return marks
 
 
@@ -191,20 +215,20 @@ def _from_above(result: Result, extent: Extent) -> Panel:
         drawn_radius(result),
         _contact_point(result),
     )
-    marks: list[Mark] = [
-        Outline(np.array([left, right, right, left]), np.array([front, front, back, back]))
-    ]
+    marks: list[Mark] = [plate_outline(result, extent)]
+    if result.plate_shape is not None and len(below := result.plate_shape.below):
+        marks.append(Line(below[:, 0], below[:, 1], "below", "ghost"))
     marks += [
         Outline(*outline, name="support", role="held") for outline in support_outlines(result)
     ]
+    marks += held_nodes(result, (0, 1))
     marks.append(Outline(x + radius * np.cos(_TURN), y + radius * np.sin(_TURN), role="sphere"))
     low = min(front, y - radius) - 0.07 * (back - front)
     beside = max(right, x + radius) + 0.05 * (right - left)
     marks += dimension((left, low), (right, low), as_given(right - left, "m"), "below")
     marks += dimension((beside, front), (beside, back), as_given(back - front, "m"), "left")
-    return Panel(
-        Axis("x", "m"), Axis("y", "m"), (*marks, *sensor_marks(result)), "From above", picture=True
-    )
+    marks += sensor_marks(result, (x, y, radius))
+    return Panel(Axis("x", "m"), Axis("y", "m"), tuple(marks), "From above", picture=True)
 
 
 def dimension(

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping
-from itertools import product
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.charts.marks import Line, Mark, Outline
-from vibroimpact.charts.outlines import THIN, disc, rectangle, strip
+from vibroimpact.charts.marks import Line, Mark, Outline, Points
+from vibroimpact.charts.outlines import THIN, disc, rectangle, strip, strips
 from vibroimpact.quoting import shortened, visible
-from vibroimpact.resolved_case import ResolvedCase
+from vibroimpact.results.plate_shape import PlateShape
 from vibroimpact.results.result import Result
+from vibroimpact.results.single_supports import single_supports
 
-_EDGES = ("x-min", "x-max", "y-min", "y-max")
 _DEPTH = 0.07
 """Drawn depth of a support, relative to the length of the plate; columns may be this many
 times deeper.
@@ -45,6 +44,10 @@ def plate_extent(result: Result) -> Extent | None:
     None if it has none.
     """
     plate = result.case.get("plate", {})
+    shape = result.plate_shape
+    if shape is not None:
+        (left, front, _), (right, back, _) = shape.low.tolist(), shape.high.tolist()
+        return Extent((left, right), (front, back), math.nan)
     deflection = result.deflection
     size = [float(side) for side in plate.get("size", ())]
     thickness = size[2] if size else math.nan
@@ -58,36 +61,6 @@ def plate_extent(result: Result) -> Extent | None:
     half_x = 0.5 * size[0]
     half_y = 0.5 * size[1]
     return Extent((-half_x, half_x), (-half_y, half_y), thickness)
-
-
-def single_supports(case: ResolvedCase) -> list[Mapping[str, Any]]:
-    """Return the supports of a case one by one: of types patch, bar, edge, point, spring and set.
-
-    Examples
-    --------
-    >>> [one["edge"] for one in single_supports({"plate": {"supports": "clamped"}})]
-    ['x-min', 'x-max', 'y-min', 'y-max']
-    >>> four = {"type": "patches", "spacing": [0.4, 0.2], "radius": 0.01}
-    >>> single_supports({"plate": {"supports": [four]}})[0]
-    {'type': 'patch', 'spacing': [0.4, 0.2], 'radius': 0.01, 'position': (-0.2, -0.1)}
-    """
-    given = case.get("plate", {}).get("supports", ())
-    if isinstance(given, str):
-        if given == "free":
-            return []
-        return [{"type": "edge", "edge": edge, "condition": given} for edge in _EDGES]
-    supports: list[Mapping[str, Any]] = []
-    for support in given:
-        if "spacing" in support:  # four of them, at the corners of a rectangle
-            across, up = (0.5 * float(side) for side in support["spacing"])
-            kind = {"patches": "patch", "bars": "bar"}[support["type"]]
-            supports += [
-                {**support, "type": kind, "position": (x * across, y * up)}
-                for x, y in product((-1.0, 1.0), repeat=2)
-            ]
-        else:
-            supports.append(support)
-    return supports
 
 
 def support_outlines(result: Result, *, edges: bool = True) -> list[tuple[Floats, Floats]]:
@@ -104,25 +77,55 @@ def support_outlines(result: Result, *, edges: bool = True) -> list[tuple[Floats
     extent = plate_extent(result)
     if extent is None:
         return []
-    outlines = [
-        _outline(support, extent)
+    return [
+        outline
         for support in single_supports(result.case)
         if edges or support["type"] != "edge"
+        for outline in _outlines(support, extent, result.plate_shape)
     ]
-    return [outline for outline in outlines if outline is not None]
 
 
-def _outline(support: Mapping[str, Any], extent: Extent) -> tuple[Floats, Floats] | None:
+def plate_outline(result: Result, extent: Extent) -> Outline:
+    """Return the outline of the plate seen from above, with its holes if its mesh was brought."""
+    if result.plate_shape is not None:
+        return Outline(*result.plate_shape.above.T)
+    (left, right), (front, back) = extent.x, extent.y
+    return Outline(np.array([left, right, right, left]), np.array([front, front, back, back]))
+
+
+def _outlines(
+    support: Mapping[str, Any], extent: Extent, shape: PlateShape | None
+) -> list[tuple[Floats, Floats]]:
+    """Return the outline of a support; of an edge one for each part of it where the plate is."""
     small = THIN * extent.longer
     if support["type"] == "edge":
-        return strip(support["edge"], extent.x, extent.y, small)
+        if shape is not None:
+            return strips(support["edge"], shape.above, small)
+        return [strip(support["edge"], extent.x, extent.y, small)]
     if "position" not in support:
-        return None
+        return []
     x, y = (float(part) for part in support["position"])
     if support.get("size"):
         length, width = (float(side) for side in support["size"])
-        return rectangle(x, y, length, width)
-    return disc(x, y, float(support.get("radius") or small))
+        return [rectangle(x, y, length, width)]
+    return [disc(x, y, float(support.get("radius") or small))]
+
+
+def held_nodes(result: Result, axes: Sequence[int]) -> list[Mark]:
+    """Return the nodes of sets that are held, as they are seen along the third axis.
+
+    Parameters
+    ----------
+    result : Result
+        The result.
+    axes : sequence of int
+        The two axes of the picture: 0 for x, 1 for y, 2 for z.
+    """
+    shape = result.plate_shape
+    if shape is None or not len(shape.held):
+        return []
+    across, up = (shape.held[:, axis] for axis in axes)
+    return [Points(across, up, "held nodes", "held nodes")]
 
 
 def supports_from_the_side(result: Result, extent: Extent, thickness: float) -> list[Mark]:
@@ -145,16 +148,18 @@ def supports_from_the_side(result: Result, extent: Extent, thickness: float) -> 
     marks_of_supports: dict[
         tuple[Any, ...], list[Mark]
     ] = {}  # of those behind each other one is seen
-    for support in single_supports(result.case):
-        outline = _outline(support, extent)
-        if outline is None:
-            continue
-        low = float(outline[0].min())
-        high = float(outline[0].max())
-        key = support["type"], support.get("condition"), round(low, 9), round(high, 9)
-        marks_of_supports.setdefault(
-            key, _from_the_side(support, (low, high), thickness, (deep, wide))
-        )
+    shape = result.plate_shape
+    for number, support in enumerate(single_supports(result.case)):
+        level = (-thickness, 0.0)
+        if shape is not None:
+            level = (float(shape.levels[number, 0]), float(shape.levels[number, 1]))
+        for across, _ in _outlines(support, extent, shape):
+            low = float(across.min())
+            high = float(across.max())
+            key = support["type"], support.get("condition"), round(low, 9), round(high, 9)
+            marks_of_supports.setdefault(
+                key, _from_the_side(support, (low, high), level, (deep, wide))
+            )
     # the widest, which may be the support of a whole edge, lie behind the others
     return [
         mark
@@ -166,12 +171,12 @@ def supports_from_the_side(result: Result, extent: Extent, thickness: float) -> 
 def _from_the_side(
     support: Mapping[str, Any],
     across: tuple[float, float],
-    thickness: float,
+    level: tuple[float, float],
     sizes: tuple[float, float],
 ) -> list[Mark]:
     low, high = across
     deep, wide = sizes
-    below = -thickness
+    below, above = level
     middle = 0.5 * (low + high)
     if support["type"] == "edge" and high - low > 2.0 * wide:
         # along the plate, in front and behind
@@ -181,7 +186,7 @@ def _from_the_side(
         outside = (high, high + deep)
         if support["edge"] == "x-min":
             outside = (low - deep, low)
-        return [_block(*outside, 0.5 * deep, below - 0.5 * deep)]
+        return [_block(*outside, above + 0.5 * deep, below - 0.5 * deep)]
     if support["type"] in ("edge", "point"):  # a knife
         side = np.array([0.0, 0.5, -0.5])
         down = np.array([0.0, 1.0, 1.0])

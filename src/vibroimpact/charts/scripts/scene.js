@@ -169,6 +169,7 @@
       this.seen = { centre, scale, middle };
       const factor = scene.exaggeration;
       this.drawSupports(pen, place, soft);
+      this.drawHeld(pen, place, soft);
       this.drawPlate(pen, place, factor, [sin, cos]);
       const feet = scene.sensors.map(({ x, y }) => place(x, y, factor * this.nearest(x, y)));
       this.drawSensors(pen, feet);
@@ -196,6 +197,10 @@
       if (sin > 0) across.reverse();
       if (cos > 0) along.reverse();
       const columnsFirst = Math.abs(sin) < Math.abs(cos);
+      const edge = scene.outline ? this.outlinePath(place, factor) : this.edgePath(corners);
+      pen.save();
+      // the grid reaches a little beyond an outline that is not its own
+      if (scene.outline) pen.clip(edge);
       const cell = (row, column) => {
         const four = [corners[row][column], corners[row][column + 1], corners[row + 1][column + 1], corners[row + 1][column]];
         const mean = 0.25 * (four[0][2] + four[1][2] + four[2][2] + four[3][2]);
@@ -210,13 +215,56 @@
       pen.lineWidth = 0.6;
       if (columnsFirst) for (const row of along) for (const column of across) cell(row, column);
       else for (const column of across) for (const row of along) cell(row, column);
+      pen.restore();
+      pen.lineWidth = 0.6;
+      pen.strokeStyle = "rgba(60, 60, 60, 0.8)";
+      pen.stroke(edge);
+    }
+
+    // Return the path around a rectangular grid.
+    edgePath(corners) {
+      const path = new Path2D();
       const edge = [
         ...corners[0], ...corners.map((row) => row[row.length - 1]), ...[...corners[corners.length - 1]].reverse(), ...corners.map((row) => row[0]).reverse(),
       ].filter((corner) => Number.isFinite(corner[2]));
-      pen.strokeStyle = "rgba(60, 60, 60, 0.8)";
-      pen.beginPath();
-      edge.forEach(([x, y], index) => (index ? pen.lineTo(x, y) : pen.moveTo(x, y)));
-      pen.stroke();
+      edge.forEach(([x, y], index) => (index ? path.lineTo(x, y) : path.moveTo(x, y)));
+      return path;
+    }
+
+    // Return the path of the outline and of holes in it, on the deformed plate: long straight parts bend too.
+    outlinePath(place, factor) {
+      const { outline, x: across, y: along } = this.scene, path = new Path2D();
+      const step = 0.03 * Math.max(across[across.length - 1] - across[0], along[along.length - 1] - along[0]);
+      let before = null;
+      for (let index = 0; index < outline.length; index += 2) {
+        const [x, y] = [outline[index], outline[index + 1]];
+        if (!Number.isFinite(x)) { before = null; continue; }
+        if (!before) path.moveTo(...place(x, y, factor * this.heightNear(x, y)));
+        else {
+          const parts = Math.max(1, Math.ceil(Math.hypot(x - before[0], y - before[1]) / step));
+          for (let part = 1; part <= parts; part++) {
+            const at = [before[0] + part / parts * (x - before[0]), before[1] + part / parts * (y - before[1])];
+            path.lineTo(...place(...at, factor * this.heightNear(...at)));
+          }
+        }
+        before = [x, y];
+      }
+      return path;
+    }
+
+    // Return the deflection at a place, between the grid points around it that have one.
+    heightNear(x, y) {
+      const { scene } = this;
+      const side = (values, value) => {
+        const at = Math.min(Math.max((value - values[0]) / (values[1] - values[0]), 0), values.length - 1), low = Math.min(Math.floor(at), values.length - 2);
+        return [[low, 1 - at + low], [low + 1, at - low]];
+      };
+      let sum = 0, weight = 0;
+      for (const [row, up] of side(scene.y, y)) for (const [column, across] of side(scene.x, x)) {
+        const height = this.heightAt(row, column);
+        if (Number.isFinite(height)) { sum += up * across * height; weight += up * across; }
+      }
+      return weight ? sum / weight : 0;
     }
 
     drawSupports(pen, place, colour) {
@@ -240,6 +288,16 @@
         pen.closePath();
         pen.fill();
         pen.globalAlpha = 1;
+      }
+    }
+
+    // The nodes of sets that are held: they stay where they are.
+    drawHeld(pen, place, colour) {
+      const { held = [] } = this.scene;
+      pen.fillStyle = colour;
+      for (let index = 0; index < held.length; index += 3) {
+        const [across, up] = place(held[index], held[index + 1], held[index + 2]);
+        pen.fillRect(across - 1.5, up - 1.5, 3, 3);
       }
     }
 

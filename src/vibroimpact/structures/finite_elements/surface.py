@@ -133,6 +133,19 @@ def outer_faces(mesh: Mesh) -> list[Faces]:
 
 def facing(mesh: Mesh, side: Side) -> list[Faces]:
     """Return the outer faces with a normal upwards or downwards; for plate elements all."""
+    return facing_along(mesh, np.array([0.0, 0.0, {"upper": 1.0, "lower": -1.0}[side]]))
+
+
+def facing_along(mesh: Mesh, direction: Floats) -> list[Faces]:
+    """Return the outer faces whose normal has a part along a direction; for plate elements all.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    direction : array, shape (3,)
+        A unit vector.
+    """
     groups = outer_faces(mesh)
     if mesh.is_flat:
         return groups
@@ -140,11 +153,8 @@ def facing(mesh: Mesh, side: Side) -> list[Faces]:
     for faces in groups:
         corner = mesh.nodes[faces.connectivity[:, list(faces.corners)]]
         normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-        outward = normal[:, 2]
-        if side == "lower":
-            outward = -outward
         area = np.linalg.norm(normal, axis=1)
-        is_facing = outward > 1e-3 * area  # False for a degenerate face without area
+        is_facing = normal @ direction > 1e-3 * area  # False for a degenerate face without area
         if is_facing.any():
             connectivity = faces.connectivity[is_facing]
             facing_groups.append(Faces(faces.kind, faces.corners, connectivity))
