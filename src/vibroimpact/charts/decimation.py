@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats, Indices
 
@@ -135,8 +137,15 @@ def thinned(
         # with the points beyond, so that the line reaches the ends
         beyond = np.clip([first - 1, last], 0, len(x) - 1)
         kept += [beyond, first + _needed_points(x[first:last], y[first:last])]
-    indices = np.unique(np.concatenate(kept))
+    indices = _ascending(np.concatenate(kept), len(x))
     return x[indices], y[indices]
+
+
+def _ascending(indices: Indices, count: int) -> Indices:
+    """Return indices below a number in their order, each once; faster than by sorting."""
+    is_chosen = np.zeros(count, dtype=bool)
+    is_chosen[indices] = True
+    return np.flatnonzero(is_chosen)
 
 
 def _needed_points(x: Floats, y: Floats) -> Indices:
@@ -162,8 +171,8 @@ def _needed_points(x: Floats, y: Floats) -> Indices:
         lowest = points[np.argmin(y[points])]
         highest = points[np.argmax(y[points])]
         fixed = np.append(fixed, [lowest, highest])
-    fixed = np.unique(fixed)
-    candidates = np.union1d(visible, fixed)
+    fixed = _ascending(fixed, count)
+    candidates = _ascending(np.concatenate([visible, fixed]), count)
     needed = _bends(x[candidates], y[candidates], np.searchsorted(candidates, fixed))
     return np.asarray(candidates[needed])
 
@@ -178,22 +187,58 @@ def _bends(x: Floats, y: Floats, fixed: Indices) -> Indices:
     tolerance = 0.0
     if finite.any():
         tolerance = _FLAT * float(np.ptp(y[finite]))
-    kept = set(fixed.tolist())
-    chords = list(zip(fixed[:-1].tolist(), fixed[1:].tolist(), strict=True))
-    while chords:
-        first, last = chords.pop()
-        if last - first < 2:
-            continue
-        between = slice(first + 1, last)
-        width = x[last] - x[first]
-        part = np.zeros(last - first - 1)
-        if width > 0.0:
-            part = (x[between] - x[first]) / width
-        chord = y[first] + (y[last] - y[first]) * part
-        distance = np.abs(y[between] - chord)
-        farthest = int(np.argmax(distance))
-        if distance[farthest] > tolerance:
-            bend = first + 1 + farthest
-            kept.add(bend)
-            chords += [(first, bend), (bend, last)]
-    return np.array(sorted(kept), dtype=np.intp)
+    kept = np.zeros(len(x), dtype=bool)
+    kept[fixed] = True
+    # of each chord the first and the last point; all chords are divided at once
+    first = fixed[:-1]
+    last = fixed[1:]
+    while True:
+        has_points = last - first > 1
+        first = first[has_points]
+        last = last[has_points]
+        if not len(first):
+            return np.flatnonzero(kept)
+        count = last - first - 1
+        starts = np.cumsum(count) - count
+        chord = np.repeat(np.arange(len(first)), count)
+        point = np.arange(len(chord)) - np.repeat(starts - first - 1, count)
+        width = (x[last] - x[first])[chord]
+        along = np.divide(
+            x[point] - x[first][chord], width, out=np.zeros(len(point)), where=width > 0.0
+        )
+        height = y[first][chord] + (y[last] - y[first])[chord] * along
+        distance = np.abs(y[point] - height)
+        distance[np.isnan(distance)] = 0.0
+        farthest = np.maximum.reduceat(distance, starts)
+        # of several points equally far the first
+        candidates = np.flatnonzero(distance == farthest[chord])
+        of_chord = np.flatnonzero(np.diff(chord[candidates], prepend=-1))
+        is_bent = farthest > tolerance
+        bend = point[candidates[of_chord]][is_bent]
+        kept[bend] = True
+        first, last = (
+            np.concatenate([first[is_bent], bend]),
+            np.concatenate([bend, last[is_bent]]),
+        )
+
+
+def rounded(values: NDArray[np.floating[Any]], part: float) -> NDArray[np.floating[Any]]:
+    """Return values rounded to multiples of a power of two, whose digits compress.
+
+    Parameters
+    ----------
+    values : array
+        The values.
+    part : float
+        Largest step of the rounded values, relative to the largest magnitude.
+
+    Examples
+    --------
+    >>> rounded(np.array([1.0, 0.3, 0.001]), 0.01).tolist()
+    [1.0, 0.296875, 0.0]
+    """
+    largest = float(np.nanmax(np.abs(values), initial=0.0))
+    if largest == 0.0 or not np.isfinite(largest):
+        return values
+    step = 2.0 ** np.floor(np.log2(part * largest))
+    return values.dtype.type(step) * np.round(values / values.dtype.type(step))

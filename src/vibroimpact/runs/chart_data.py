@@ -10,8 +10,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.charts.axis import Axis, View
-from vibroimpact.charts.decimation import visible_points
-from vibroimpact.charts.marks import Spans
+from vibroimpact.charts.decimation import thinned, visible_points
+from vibroimpact.charts.marks import Line, Spans
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.results.result import Result
 
@@ -27,6 +27,10 @@ MOST_POINTS = 100_000
 """Points of a history drawn, and samples of a signal; of longer ones those that show the
 whole, and the first contacts in full.
 """
+
+
+_FEW_POINTS = 2000
+"""Points of a line up to which all are drawn."""
 
 
 def contacts_with_duration(result: Result) -> Indices:
@@ -205,6 +209,42 @@ def drawn_history(result: Result) -> Mapping[str, Floats]:
     )
     chosen = np.unique(np.concatenate([*kept, inside[: MOST_POINTS // 2], [0, count - 1]]))
     return {name: values[chosen] for name, values in history.items()}
+
+
+def line_over_time(
+    time: Floats, values: Floats, axis: Axis, name: str = "", role: str = "main"
+) -> Line:
+    """Return a line over the time of a run, of the points that are seen in it, in each of its views
+    and in each range of time between two of them.
+
+    Parameters
+    ----------
+    time, values : array
+        The line.
+    axis : Axis
+        The axis of time, with its views.
+    name, role : str
+        Name in the legend, and role.
+    """
+    if len(time) <= _FEW_POINTS:
+        return Line(time, values, name, role)
+    return Line(*thinned(time, values, windows_of(axis, time)), name, role)
+
+
+def windows_of(axis: Axis, time: Floats) -> list[tuple[float, float]]:
+    """Return the views of an axis of time, and the ranges of time between them [s].
+
+    Examples
+    --------
+    >>> view = View("Impact 1", 0.4, 0.5, 0.41, "Time")
+    >>> windows_of(Axis("Time", "s", views=(view,)), np.array([0.0, 1.0]))
+    [(0.4, 0.5), (0.0, 0.4), (0.5, 1.0)]
+    """
+    views = [(view.start, view.end) for view in axis.views]
+    starts = [float(time[0]), *(end for _, end in views)]
+    ends = [*(start for start, _ in views), float(time[-1])]
+    between = [(start, end) for start, end in zip(starts, ends, strict=True) if start < end]
+    return views + between
 
 
 def _visible(x: Floats, y: Floats) -> Indices:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Layer, Level, Stack
 from vibroimpact.dynamics.motion.columns import ALL_HISTORY_COLUMNS
 from vibroimpact.results.result import Result
-from vibroimpact.runs.chart_data import spans_of_contact, time_axis, views_of_contacts
+from vibroimpact.runs.chart_data import spans_of_contact, time_axis, views_of_contacts, windows_of
 
 _MOTIONS = {
     "sphere_motion_J": ("vibration of the sphere", "sphere_vibration_J", "sphere_strain_J"),
@@ -38,6 +39,9 @@ _ROLES = {
     "kinetic_J": "kinetic",
 }
 """The bands from the bottom of the stack to its top, with their roles."""
+
+_MOST_IN_WINDOW = 500
+"""Points along the edge of a band in a view: as many as a page draws."""
 
 _COLUMNS = 110
 """Number of points along the edge of a band over the whole run, besides those at impacts."""
@@ -74,16 +78,41 @@ def ledger_chart(result: Result, history: Mapping[str, Floats], caption: str) ->
     if sinks:
         title += " (bands are stacked on the potential energy where it is negative)"
     # contacts are shaded where they are enlarged alone, since the bands cover the ground
-    stack = Stack(history["time_s"], tuple(layers), _drawn_points(result, history))
+    time = time_axis(result, views_of_contacts(result))
+    overview = _drawn_points(result, history)
+    kept = np.union1d(overview, _points_of_windows(history["time_s"], time))
+    stack = Stack(
+        history["time_s"][kept],
+        tuple(replace(layer, values=layer.values[kept]) for layer in layers),
+        np.searchsorted(kept, overview),
+    )
     drive_work = -history.get("drive_J", np.zeros(1))  # of a plate that is shaken
     name_of_total = "put in at the start" if drive_work.any() else "total put in"
     total = Level(put_in, name_of_total, "total")
-    time = time_axis(result, views_of_contacts(result))
     low = float(min(np.min(bands["potential_J"]), 0.0))
     high = 1.06 * (put_in + max(float(drive_work.max()), 0.0))
     energy = Axis("Energy", "J", range=(low, high))
     panel = Panel(time, energy, (spans_of_contact(result), stack, total))
     return Chart("energy", title, ((panel,),), caption, height=3.9)
+
+
+def _points_of_windows(time: Floats, axis: Axis) -> Indices:
+    """Return the indices of points of the history that are drawn in each view, and between views.
+
+    They are evenly spaced, as those that a page draws.
+    """
+    if len(time) <= _MOST_IN_WINDOW:
+        return np.arange(len(time))
+    chosen = []
+    for start, end in windows_of(axis, time):
+        first = np.searchsorted(time, start)
+        last = np.searchsorted(time, end, side="right")
+        if last - first <= _MOST_IN_WINDOW:
+            chosen.append(np.arange(first, last))
+        else:
+            chosen.append(np.searchsorted(time, np.linspace(start, end, _MOST_IN_WINDOW)))
+        chosen.append(np.array([first - 1, last]))  # those beyond, so that bands reach the ends
+    return np.unique(np.concatenate(chosen)).clip(0, len(time) - 1)
 
 
 def bands_of(history: Mapping[str, Floats]) -> dict[str, Floats]:

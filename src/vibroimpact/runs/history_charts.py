@@ -12,12 +12,13 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
-from vibroimpact.charts.marks import Line, Mark, Points
+from vibroimpact.charts.marks import Mark, Points
 from vibroimpact.dynamics.motion.columns import HISTORY_COLUMNS
 from vibroimpact.results.result import Result
 from vibroimpact.runs.below import level_below
 from vibroimpact.runs.chart_data import (
     gravity_of,
+    line_over_time,
     spans_of_contact,
     time_axis,
     touch_height,
@@ -87,14 +88,15 @@ def history_chart(
     time = time_axis(result, views)
     marks: list[Mark] = [
         spans_of_contact(result),
-        Line(history["time_s"], history[quantity.column]),
+        line_over_time(history["time_s"], history[quantity.column], time),
     ]
     if quantity is POSITION and "surface_m" in history and len(result.impacts["time_s"]):
         above = touch_height(result) - _at(result, "surface_m", result.impacts["time_s"][:1])[0]
         marks.append(
-            Line(
+            line_over_time(
                 history["time_s"],
                 history["surface_m"] + above,
+                time,
                 "where it touches the moving plate",
                 "reference",
             )

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.charts.decimation import rounded
 from vibroimpact.results.deflection import Deflection
 from vibroimpact.results.result import Result
 from vibroimpact.results.surface_grid import beyond_edge
@@ -16,6 +17,9 @@ from vibroimpact.runs.supports import support_outlines
 
 HEIGHT = 0.16
 """Largest drawn deflection, relative to the longer side of the plate."""
+
+_STEP = 3e-4
+"""Largest step of drawn deflections, relative to the largest one: a thirtieth of a pixel."""
 
 _FRAMES = 240
 """Frames of a whole run."""
@@ -64,7 +68,7 @@ def scene_of(result: Result) -> dict[str, Any]:
     return {
         "x": deflection.x,
         "y": deflection.y,
-        "height": height,
+        "height": rounded(height, _STEP),
         **shape,
         "time": deflection.time - float(result.impacts["time_s"][0]),
         "sphere": deflection.sphere_position,

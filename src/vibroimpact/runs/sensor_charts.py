@@ -62,9 +62,10 @@ def sensor_chart(result: Result, chart: str, name: str, caption: str) -> Chart:
     sensor = signal.sensor
     level = Axis(sensor.quantity.capitalize(), sensor.unit)
     range_words, levels = _range(result, name)
+    time = plate_time(result)
     line = Line(*drawn_signal(signal, first.start, first.stop))
     upper = Panel(
-        plate_time(result),
+        time,
         level,
         (spans_of_contact(result), line, *levels),
         f"{sensor.quantity.capitalize()}{range_words}",

@@ -12,10 +12,14 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
-from vibroimpact.charts.marks import Line
 from vibroimpact.results.fine_history import resolved_span
 from vibroimpact.results.result import Result
-from vibroimpact.runs.chart_data import spans_of_contact, time_axis, views_of_contacts
+from vibroimpact.runs.chart_data import (
+    line_over_time,
+    spans_of_contact,
+    time_axis,
+    views_of_contacts,
+)
 
 
 class Row(NamedTuple):
@@ -125,7 +129,7 @@ def _chart(
                 Panel(
                     time,
                     Axis("", row.unit),
-                    (spans_of_contact(result), Line(history["time_s"], values)),
+                    (spans_of_contact(result), line_over_time(history["time_s"], values, time)),
                     row.title,
                 ),
             )

@@ -18,6 +18,7 @@ from vibroimpact.charts.marks import Band, Label, Level, Line, Map, Points, Stac
 from vibroimpact.charts.pack import pack, unpack
 from vibroimpact.charts.palette import LOOKS, series
 from vibroimpact.charts.plotly import plotly_chart
+from vibroimpact.runs.chart_data import line_over_time, windows_of
 
 RANDOM = np.random.default_rng(5)
 
@@ -278,3 +279,22 @@ def test_evenly_spaced_values_are_described() -> None:
         np.array([0.0, np.nan, 2.0]),
     ):
         np.testing.assert_array_equal(unpack(pack({"a": odd}))["a"], odd.astype(np.float32))
+
+
+def test_a_line_over_time_is_what_is_seen_of_it_in_every_view() -> None:
+    """Points that no pixel shows are left out: the rest lies within a tenth of a pixel."""
+    time = np.union1d(np.linspace(0.0, 2.0, 5001), np.linspace(1.0, 1.001, 5001))
+    values = np.sin(40.0 * time) + (time > 1.0) * np.exp(-np.abs(time - 1.0) / 1e-4)
+    axis = Axis("Time", "s", views=(View("Impact 1", 0.999, 1.002, 1.0, "Time"),))
+    line = line_over_time(time, values, axis)
+    assert len(line.x) < 0.25 * len(time)
+    for start, end in [(0.0, 2.0), *windows_of(axis, time)]:
+        seen = (time >= start) & (time <= end)
+        distance = np.abs(np.interp(time[seen], line.x, line.y) - values[seen])
+        # more points are seen in the whole than its columns hold, of which the extremes stay
+        assert distance.max() < 3.1e-4 * np.ptp(values[seen]), (start, end)
+
+
+def test_short_lines_are_drawn_in_full() -> None:
+    time = np.linspace(0.0, 1.0, 2000)
+    assert line_over_time(time, time, Axis("Time", "s")).x is time

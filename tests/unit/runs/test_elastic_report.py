@@ -43,6 +43,7 @@ from vibroimpact.runs.charts import run_charts
 from vibroimpact.runs.deformation import counted_twice, deformation_rows, treatment_sentence
 from vibroimpact.runs.energy_chart import bands_of
 from vibroimpact.runs.paraview import write_paraview
+from vibroimpact.runs.report import report_of
 from vibroimpact.runs.scene import exaggeration, scene_of
 from vibroimpact.runs.spectrum import amplitude_spectrum
 from vibroimpact.runs.tables import impact_table
@@ -367,7 +368,14 @@ def test_the_page_has_the_plate_in_motion(result: Result, folder: Path) -> None:
     scene = Page((folder / "report.html").read_text()).data()["scene"]
     assert scene.keys() == scene_of(result).keys()
     frames, rows, columns = deflection.height.shape
-    np.testing.assert_array_equal(scene["height"].reshape(frames, rows, columns), deflection.height)
+    # to a small part of a pixel
+    most = float(np.abs(deflection.height).max())
+    np.testing.assert_allclose(
+        scene["height"].reshape(frames, rows, columns),
+        deflection.height,
+        rtol=0.0,
+        atol=3e-4 * most,
+    )
     np.testing.assert_allclose(
         scene["time"], deflection.time - result.impacts["time_s"][0], rtol=1e-6
     )
@@ -533,3 +541,10 @@ def test_a_spectrum_reads_the_amplitude_of_a_tone() -> None:
     assert found.frequency[found.amplitude.argmax()] == 500.0
     assert found.amplitude.max() == pytest.approx(2.0, rel=1e-3)
     assert found.span == pytest.approx(0.4)
+
+
+@pytest.mark.slow
+def test_the_page_of_the_papers_type_3_is_below_4_mb() -> None:
+    """It was 7 MB, two thirds of them points that no pixel shows."""
+    result = vi.result_of(vi.simulate(vi.load_case("paper:type3")))
+    assert len(page_of_report(report_of(result))) < 3.9e6

@@ -5,6 +5,15 @@ const vibroimpact = globalThis.vibroimpact = globalThis.vibroimpact || {};
 {
   const TYPES = { f4: Float32Array, f8: Float64Array, i4: Int32Array };
 
+  const PLANES = { p4: Float32Array, p8: Float64Array };
+
+  // Return an array whose bytes lie by planes: the first ones of all values, then the second ones, and so on.
+  const byPlanes = (buffer, Type, start, length) => {
+    const size = Type.BYTES_PER_ELEMENT, planes = new Uint8Array(buffer, start, size * length), bytes = new Uint8Array(size * length);
+    for (let plane = 0; plane < size; plane++) for (let index = 0; index < length; index++) bytes[size * index + plane] = planes[plane * length + index];
+    return new Type(bytes.buffer);
+  };
+
   // Return the document in an ArrayBuffer.
   vibroimpact.unpack = (buffer) => {
     const length = new DataView(buffer).getUint32(0, true);
@@ -13,7 +22,7 @@ const vibroimpact = globalThis.vibroimpact = globalThis.vibroimpact || {};
     const array = ([type, first, second, third]) => {
       if (type === "texts") return JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4 + length + first, second)));
       if (type === "even") return Float64Array.from({ length: third }, (_, index) => first + second * index);
-      const values = new TYPES[type](buffer, 4 + length + first, second);
+      const values = type in PLANES ? byPlanes(buffer, PLANES[type], 4 + length + first, second) : new TYPES[type](buffer, 4 + length + first, second);
       values.columns = third || 0;
       return values;
     };
