@@ -49,9 +49,11 @@ def test_a_run_of_every_kind_has_a_page(name: str) -> None:
     assert [value for key, value in page.attributes if key == "data-chart"] == names
     assert (data["scene"] is None) == (result.deflection is None)
     traces = next(chart for chart in data["charts"] if chart["name"] == "position")["data"]
-    (drawn,) = (trace for trace in traces if len(trace["y"]) == len(result.history["time_s"]))
-    np.testing.assert_allclose(drawn["y"], result.history["position_m"], rtol=1e-6)
-    np.testing.assert_allclose(drawn["x"], result.history["time_s"], rtol=1e-6, atol=1e-12)
+    drawn = next(trace for trace in traces if trace.get("mode") == "lines" and len(trace["x"]) > 2)
+    # the line passes within a tenth of a pixel of every point of the history
+    position = result.history["position_m"]
+    away = np.abs(np.interp(result.history["time_s"], drawn["x"], drawn["y"]) - position)
+    assert away.max() <= 3.1e-4 * np.ptp(position) + 1e-6 * np.abs(position).max()
     for cells in impact_table(result).rows:
         assert all(cell in page.text for cell in cells)
 
