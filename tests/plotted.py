@@ -101,7 +101,11 @@ class Plotted:
 def show(page: Page, name: str) -> None:
     """Bring a chart into the window, and wait until it is drawn."""
     # charts above that are drawn meanwhile may push it out again
-    into = "one.element.scrollIntoView({ block: 'center', behavior: 'instant' })"
+    into = (
+        "for (let fold = one.element.closest('details'); fold; "
+        "fold = fold.parentElement.closest('details')) fold.open = true; "
+        "one.element.scrollIntoView({ block: 'center', behavior: 'instant' })"
+    )
     until(
         page,
         f"(name) => {{ const one = {_CHART}; {into}; return one.near && !one.stale && "

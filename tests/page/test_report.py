@@ -549,6 +549,7 @@ def test_case_can_be_copied(new_page: MakePage, report: Any) -> None:
     page = new_page()
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     open_report(page, path)
+    page.locator("summary", has_text="Case").click()
     button = page.locator("button[data-copy]")
     button.click()
     until(page, "() => document.querySelector('button[data-copy]').textContent !== 'Copy'")
@@ -613,6 +614,7 @@ def test_without_scripts_there_are_tables_and_a_notice(
     assert "need scripts" in notice.text_content()
     assert notice.is_visible()
     assert page.locator("table.impacts tbody tr").count() == len(result.impacts["impact"])
+    page.locator("summary", has_text="Case").click()
     assert page.locator("#case-text").is_visible()
     assert (
         page.locator(":not(td) > button, select, canvas, .chart").filter(visible=True).count() == 0
@@ -667,6 +669,35 @@ def test_the_page_does_not_scroll_sideways(
     for name in names(page):
         show(page, name)
     assert not scrolls_sideways(page)
+
+
+@pytest.mark.parametrize("case", ["type1", "type3", "newton", "no impact", "hostile"])
+def test_the_page_is_four_screens_long_until_something_is_opened(
+    case: str, new_page: MakePage, report: Any
+) -> None:
+    _, path = report(case)
+    page = new_page(1440, 900)
+    open_report(page, path)
+    assert page.evaluate("() => document.documentElement.scrollHeight") <= 4 * 900
+
+
+def test_a_link_opens_what_it_leads_to(new_page: MakePage, report: Any) -> None:
+    _, path = report("type3")
+    page = new_page(1440, 900)
+    open_report(page, path)
+    chart = page.locator("#plate_energy")
+    assert not chart.is_visible()
+    page.locator("nav a", has_text="Energy of the plate").click()
+    assert chart.is_visible()
+    until(page, "() => vibroimpact.charts.get('plate_energy').near")
+    assert not page.locator("#case-text").is_visible()
+    page.locator("nav a", has_text="Case").click()
+    assert page.locator("#case-text").is_visible()
+    # also one that is followed from elsewhere
+    page.goto("about:blank")
+    page.goto(f"{path.as_uri()}#sensor_a1")
+    page.wait_for_selector("html[data-ready=true]")
+    assert page.locator("#sensor_a1").is_visible()
 
 
 def test_charts_follow_the_width_of_the_window(page: Page, report: Any) -> None:

@@ -67,6 +67,15 @@
     }
   };
 
+  // What a link leads to is opened.
+  const connectFolds = () => {
+    const open = (hash) => {
+      for (let fold = hash && $(decodeURIComponent(hash.slice(1)))?.closest("details"); fold; fold = fold.parentElement.closest("details")) fold.open = true;
+    };
+    for (const link of document.querySelectorAll('a[href^="#"]')) link.addEventListener("click", () => open(link.hash));
+    open(location.hash);
+  };
+
   // On paper: light, with everything open and drawn, as wide as it is there [px]; afterwards as before.
   const connectPaper = (charts) => {
     const COLUMN = 330, PAGE = 680;
@@ -111,6 +120,7 @@
     connectViews(charts);
     connectKeys(charts);
     connectCopies();
+    connectFolds();
     if (moving) scene = vibroimpact.controlScene($("scene"), moving);
     connectPaper(charts);
     vibroimpact.charts = charts;

@@ -436,6 +436,8 @@ class Section:
         Whether it follows the charts.
     medium : str
         Where it is shown: on the "page", in the "terminal", or in "both".
+    is_folded : bool
+        Whether the page shows it only when it is opened; one with a text, such as the case, always.
     """
 
     name: str
@@ -443,6 +445,12 @@ class Section:
     blocks: Sequence[Block]
     after_charts: bool = False
     medium: Literal["page", "terminal", "both"] = "both"
+    is_folded: bool = False
+
+    @property
+    def folds(self) -> bool:
+        """Whether the page shows it only when it is opened."""
+        return self.is_folded or any(isinstance(block, Code) for block in self.blocks)
 
     @property
     def charts(self) -> tuple[Chart, ...]:
@@ -550,6 +558,16 @@ class Report:
             chart for section in self.sections if section.after_charts for chart in section.charts
         ]
         return (*ahead, *self.charts, *behind)
+
+    @property
+    def open_charts(self) -> int:
+        """How many of its charts the page shows before the others are opened: two, or one below
+        what moves; all if only one would be left.
+        """
+        count = 1 if self.scenes else 2
+        if len(self.charts) <= count + 1:
+            return len(self.charts)
+        return count
 
     @property
     def all_charts(self) -> tuple[Chart, ...]:

@@ -44,10 +44,15 @@ def report_of(result: Result) -> Report:
     >>> import vibroimpact as vi
     >>> result = vi.result_of(vi.simulate(vi.load_case("paper:type1-theory")))
     >>> [section.title for section in report_of(result).sections]
-    ['Set-up', 'Impacts', 'Energy at the end', 'Case']
+    ['Set-up', 'Impacts', 'Energy at the end', 'Set-up in words', 'Case']
     """
     charts = {chart.name: chart for chart in run_charts(result)}
     sections = [_setup(result), _impacts(result), _energies(result)]
+    if rows := setup_rows(result):
+        facts = Facts(rows)
+        sections.append(
+            Section("in-words", "Set-up in words", (facts,), medium="page", is_folded=True)
+        )
     if result.signals:
         sections.append(_sensors(result))
     deformation = _deformation(result)
@@ -77,12 +82,10 @@ def report_of(result: Result) -> Report:
 
 
 def _setup(result: Result) -> Section:
-    """Return what bodies, drop, law and sensors are, and how it is held."""
+    """Return the sketch of the set-up."""
     (sketch,) = made_charts({"setup": partial(setup_chart, result)})
-    blocks: list[Block] = [Figure(sketch, has_title=False)]
-    if rows := setup_rows(result):
-        blocks.append(Facts(rows))
-    return Section("set-up", "Set-up", blocks, medium="page")
+    figure = Figure(sketch, has_title=False)
+    return Section("set-up", "Set-up", (figure,), medium="page")
 
 
 def _impacts(result: Result) -> Section:
@@ -135,7 +138,7 @@ def _deformation(result: Result) -> Section:
         blocks.append(Paragraph(sentence))
     if rows := deformation_rows(result):
         blocks.append(Facts(rows))
-    return Section("deformation", "Deformation of the bodies", blocks)
+    return Section("deformation", "Deformation of the bodies", blocks, is_folded=True)
 
 
 def _motion(result: Result, maps: Chart | None) -> Section:

@@ -320,9 +320,13 @@
       }
     }
 
-    // Names stand beside their sensors, or above where there is no room; lower, if they would lie over other sensors and names.
+    // Names stand beside their sensors, or above where there is no room; lower, if they would lie over the ball, other sensors and names.
     nameSensors(pen, feet) {
       const taken = feet.map(([across, up]) => [across - 6, across + 6, up - 9, up]);
+      if (this.scene.radius && this.ball) {
+        const [x, y, radius] = this.ball;
+        taken.push([x - radius, x + radius, y - radius, y + radius]);
+      }
       pen.font = "12px system-ui, sans-serif";
       pen.strokeStyle = "rgba(255, 255, 255, 0.75)";
       pen.fillStyle = "#1b1b1b";
