@@ -51,9 +51,12 @@ def test_a_run_of_every_kind_has_a_page(name: str) -> None:
     traces = next(chart for chart in data["charts"] if chart["name"] == "position")["data"]
     drawn = next(trace for trace in traces if trace.get("mode") == "lines" and len(trace["x"]) > 2)
     # the line passes within a tenth of a pixel of every point of the history
-    position = result.history["position_m"]
-    away = np.abs(np.interp(result.history["time_s"], drawn["x"], drawn["y"]) - position)
-    assert away.max() <= 3.1e-4 * np.ptp(position) + 1e-6 * np.abs(position).max()
+    time, position = result.history["time_s"], result.history["position_m"]
+    away = np.abs(np.interp(time, drawn["x"], drawn["y"]) - position)
+    # at a jump two points have the same time, of which interpolation gives one
+    is_jump = np.isin(time, time[1:][np.diff(time) == 0.0])
+    away = away[~is_jump]
+    assert away.max(initial=0.0) <= 3.1e-4 * np.ptp(position) + 1e-6 * np.abs(position).max()
     for cells in impact_table(result).rows:
         assert all(cell in page.text for cell in cells)
 
