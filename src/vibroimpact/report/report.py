@@ -560,16 +560,6 @@ class Report:
         return (*ahead, *self.charts, *behind)
 
     @property
-    def open_charts(self) -> int:
-        """How many of its charts the page shows before the others are opened: two, or one below
-        what moves; all if only one would be left.
-        """
-        count = 1 if self.scenes else 2
-        if len(self.charts) <= count + 1:
-            return len(self.charts)
-        return count
-
-    @property
     def all_charts(self) -> tuple[Chart, ...]:
         """The charts of the page, and those that show in files what moves on it."""
         stills = [scene.still for scene in self.scenes if scene.still is not None]
