@@ -189,6 +189,7 @@ _READERS: dict[str, Callable[[Mapping[str, bytes]], Any]] = {
     "exudyn": _python,
     "mujoco": _mujoco,
     "csv": _csv,
+    "dem": _csv,
     "parquet": _parquet,
     "mat": _mat,
     "uff58": _uff58,

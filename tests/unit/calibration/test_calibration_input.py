@@ -54,7 +54,6 @@ FAULTS = [
     ),
     ({"target": {"restitution": 1.1}}, "calibrate.target.restitution: 1.1 is not allowed"),
     ({"target": {"restitution": NAN}}, "calibrate.target.restitution: nan is not finite"),
-    ({"target": {"restitution": "70 %"}}, "calibrate.target.restitution"),
     (
         {"target": {"restitution": [0.7, 0.6]}},
         "2 restitutions need as many approach speeds, and no approach_speed is given",

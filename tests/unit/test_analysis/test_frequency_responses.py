@@ -626,6 +626,7 @@ def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "Measured modes" in Path("beside/report.html").read_text()
 
 
+@pytest.mark.filterwarnings("ignore::vibroimpact.errors.LeftOutWarning")
 def test_what_the_commands_refuse(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("plate.toml").write_text(tomli_w.dumps(TABLE))

@@ -107,7 +107,7 @@ FORMAT = ExportFormat(
     program="people who set up LAMMPS, YADE, LIGGGHTS, EDEM, Rocky or MFiX",
     files="NAME-typed.csv, NAME-time-steps.csv and NAME-softened.csv",
     tested="each program's documented force, integrated with the typed numbers by SciPy; LAMMPS "
-    "was run with them. The others were not run",
+    "22 Jul 2025, update 4, was run with them. The others were not run",
     write=_write,
     notes=_notes,
     rows=rows,
