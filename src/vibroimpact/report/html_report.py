@@ -14,6 +14,8 @@ from vibroimpact.report.report import Block, Facts, Paragraph, Report, Table, fi
 def html_report(report: Report) -> str:
     """Return title, answer, facts and tables of a report as HTML; texts are escaped.
 
+    The answer begins with the main results and their errors.
+
     Examples
     --------
     >>> from vibroimpact.report.report import Section
@@ -45,8 +47,13 @@ def html_summary(report: Report) -> str:
 
 
 def _head(report: Report) -> Markup:
+    """Return the title, the answer in words, and the main results with their errors."""
     head = Markup("<p><strong>{}</strong><br>{}</p>")
-    return head.format(visible(report.title), visible(report.answer))
+    words = head.format(visible(report.title), visible(report.answer))
+    if not report.quantities:
+        return words
+    answer = html_table((), [quantity.cells for quantity in report.quantities])
+    return words + Markup("\n") + answer
 
 
 def _html_block(block: Block) -> Markup:

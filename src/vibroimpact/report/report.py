@@ -319,6 +319,11 @@ class Quantity:
     figures: int = _FIGURES
 
     @property
+    def cells(self) -> tuple[str, str, str, str]:
+        """Its name, value, error and note, as a row of the answer."""
+        return self.name, self.text, self.error_text, self.note
+
+    @property
     def is_range(self) -> bool:
         """Whether it is a range."""
         return not math.isnan(self.largest)

@@ -19,7 +19,6 @@ from vibroimpact.report.report import (
     Heading,
     Note,
     Paragraph,
-    Quantity,
     Report,
     Section,
     Table,
@@ -59,7 +58,7 @@ def terminal_report(report: Report) -> RenderableType:
     if report.answer:
         lines.append(Text(report.answer))
     if report.quantities:
-        lines.append(facts([_quantity_cells(row) for row in report.quantities], indent=1))
+        lines.append(facts([quantity.cells for quantity in report.quantities], indent=1))
     warnings = report.all_warnings
     if report.quantities:
         # beside the answer, the worst one; the others follow at the end
@@ -75,11 +74,6 @@ def terminal_report(report: Report) -> RenderableType:
     if report.all_warnings and report.warnings_note:
         lines.append(Text(report.warnings_note, style="dim"))
     return Group(*lines)
-
-
-def _quantity_cells(quantity: Quantity) -> tuple[str, ...]:
-    """Return name, value, error and note of a main result."""
-    return quantity.name, quantity.text, quantity.error_text, quantity.note
 
 
 def _heading_lines(section: Section, *, is_first: bool) -> Iterator[Text]:

@@ -176,3 +176,11 @@ def test_modes_tell_the_first_frequency() -> None:
     error = sphere.model.frequency_errors[0]
     assert first.error == error or (math.isnan(first.error) and math.isnan(error))
     assert answer["Modes of the sphere"].value == 5
+
+
+def test_a_notebook_begins_with_the_answer() -> None:
+    result = vi.result_of(vi.simulate(vi.load_case("paper:type1-theory")))
+    html = plain(result._repr_html_())
+    force = result.report.quantities[0]
+    cells = f"<td>{plain(force.text)}</td><td>{plain(force.error_text)}</td>"
+    assert html.index(cells) < html.index("<th>Impact")
