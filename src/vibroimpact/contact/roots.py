@@ -190,6 +190,9 @@ def solve_monotonic(
     most = np.full_like(start, -np.inf)
     unreachable = np.zeros(start.shape, dtype=bool)
     for number, trial in enumerate(_trials(start, allowed, max_steps)):
+        # at extreme arguments, which only others need, the function may be slow
+        has_bracket = ~(np.isnan(low) | np.isnan(high))
+        trial = np.where(has_bracket, low, trial)
         value = function(trial)
         least = np.fmin(least, value)
         most = np.fmax(most, value)

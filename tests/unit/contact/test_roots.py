@@ -229,3 +229,18 @@ def test_flat_where_it_begins() -> None:
         Range(above=0),
     )
     np.testing.assert_allclose(found.place, [10.0**3.7, 10.0**3.1], rtol=1e-8)
+
+
+def test_what_has_a_bracket_is_not_taken_to_extremes() -> None:
+    """The search for one that is out of reach does not slow down the others."""
+    largest = np.zeros(2)
+
+    def function(values: np.ndarray) -> np.ndarray:
+        np.maximum(largest, values, out=largest)
+        return values / (1.0 + values)
+
+    roots = solve_monotonic(function, np.array([0.9, 1.1]), np.ones(2), Range(at_least=0))
+    assert roots.place[0] == pytest.approx(9.0)
+    assert np.isnan(roots.place[1])
+    assert largest[0] <= 16.0
+    assert largest[1] > 1e9
