@@ -355,6 +355,8 @@ class Quantity:
             low, high = map(self._with_decimals, self.interval)
             if low != high:
                 return f"95\u00a0%: {self._in_unit(f'{low} to {high}')}"
+            if self.value == 0.0:  # to all its figures
+                return ""
             error = 0.5 * (self.interval[1] - self.interval[0]) / abs(self.value)
         if not error > _EXACT:
             return ""
@@ -385,11 +387,11 @@ class Quantity:
         """Return a value in the decimals that the interval leaves."""
         assert self.interval is not None
         size = self._multiple.size
-        half = 0.5 * (self.interval[1] - self.interval[0]) / size
+        # half an interval is 3 to 30 of the last digit
+        digit = (self.interval[1] - self.interval[0]) / (6.0 * size)
         decimals = _FIGURES - 1
-        if half > 0.0:
-            # half an interval is 3 to 30 of the last digit
-            decimals = -math.floor(math.log10(half / 3.0))
+        if digit > 0.0:
+            decimals = -math.floor(math.log10(digit))
         before_point = len(f"{abs(self.value) / size:.0f}")
         return fixed(value / size, min(max(decimals, 0), max(_FIGURES - before_point, 0)))
 

@@ -40,6 +40,8 @@ def plain(text: str) -> str:
         # an interval below the last of five figures is told by its half
         (20.0, (19.9999, 20.0001), "20.000 %", "± 0.0005 %"),
         (20.0, (20.0, 20.0), "20.000 %", ""),
+        (0.0, (0.0, 1e-9), "0.0000 %", ""),
+        (0.0, (0.0, 5e-324), "0.0000 %", ""),
     ],
 )
 def test_digits_are_those_that_the_interval_leaves(
