@@ -1142,9 +1142,10 @@ def test_charts_of_a_shaken_plate(law: str) -> None:
     )
     position = next(chart for chart in run_charts(result) if chart.name == "position")
     (ball, surface) = (mark for mark in position.rows[0][0].marks if isinstance(mark, Line))
-    assert (ball.y - surface.y).min() >= -1.1 * float(
-        result.impacts["max_indentation_m"].max()
-    ) - 1e-9
+    # both curves are thinned to what is seen: a tenth of a pixel, 3e-4 of the range
+    gap = np.interp(surface.x, ball.x, ball.y) - surface.y
+    seen = 6e-4 * float(np.ptp(ball.y))
+    assert gap.min() >= -1.1 * float(result.impacts["max_indentation_m"].max()) - seen
     times, velocities = _touch_and_release(result)
     around = np.array([times[0] - 1e-6, times[1] + 1e-6])
     assert np.interp(
