@@ -1,4 +1,4 @@
-"""What `modes = "auto"` leaves out: 40 plates beside four times the modes, and what it costs.
+"""What `modes = "auto"` leaves out: 40 plates beside four times the modes.
 
     python benchmarks/bench_auto_modes.py [NUMBER ...]      only the plates of these numbers
 
