@@ -24,6 +24,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -196,6 +197,7 @@ def _signal_error(band: Band, impulse: Impulse, frequency: float, force_error: f
     return float(np.sqrt((error**2 * power).sum() / total))
 
 
+@cache
 def _force_spectrum() -> Floats:
     r"""Return the magnitude of the spectrum of the force, over that at zero, times a constant.
 

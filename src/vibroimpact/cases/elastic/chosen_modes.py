@@ -15,7 +15,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.fields.elastic_body import DEFAULT_ACCURACY
-from vibroimpact.cases.rigid.expected import expected_of
+from vibroimpact.cases.rigid.expected import expected_of, plate_impedance
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures.enough_modes import (
@@ -170,14 +170,15 @@ def _density(recipe: Recipe) -> ModalDensity:
     of_volume = _AT_SURFACE * modes_per_volume(recipe, 1.0) / recipe.density
     if not isinstance(recipe.shape, (PlateOfPlates, PlateOfSolids)):
         return ModalDensity(0.0, of_volume)  # a sphere
-    thickness = recipe.shape.size[2]
-    plane_strain_modulus = recipe.youngs_modulus / (1.0 - recipe.poissons_ratio**2)
-    bending_stiffness = plane_strain_modulus * thickness**3 / 12.0
-    impedance = 8.0 * math.sqrt(bending_stiffness * recipe.density * thickness)
-    of_bending = 2.0 / (math.pi * impedance)
+    of_bending = 2.0 / (math.pi * plate_impedance(_material(recipe), recipe.shape.size[2]))
     if isinstance(recipe.shape, PlateOfPlates):
         of_volume = 0.0
     return ModalDensity(of_bending, of_volume)
+
+
+def _material(recipe: Recipe) -> Material:
+    """Return the material of a recipe."""
+    return Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
 
 
 def _free_edges_near(recipe: Recipe, contact: Spot, frequency: float) -> int:
@@ -186,9 +187,8 @@ def _free_edges_near(recipe: Recipe, contact: Spot, frequency: float) -> int:
         return 0
     assert isinstance(contact, tuple)  # x and y on a plate that is meshed here
     size = recipe.shape.size
-    material = Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
     omega = np.array(2.0 * math.pi * frequency)
-    half_wave = math.pi / float(wave_numbers(omega, size[2], material, thin=True))
+    half_wave = math.pi / float(wave_numbers(omega, size[2], _material(recipe), thin=True))
     held_edges = {support.edge for support in recipe.supports if isinstance(support, Edge)}
     number = 0
     for edge in EDGES:

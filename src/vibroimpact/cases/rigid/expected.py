@@ -22,6 +22,7 @@ from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
     from vibroimpact.cases.sections.schema import CaseTable
+    from vibroimpact.materials import Material
 
 # deflection of a square plate under a force at its centre over F a^2 / D: Timoshenko and
 # Woinowsky-Krieger 1959, Tables 23 and 37
@@ -119,6 +120,15 @@ def first_restitution(case: CaseTable) -> ExpectedRestitution:
     return expected._replace(to_ask=to_ask)
 
 
+def plate_impedance(material: Material, thickness: float) -> float:
+    """Return the impedance of an infinite thin plate to a force on a point, 8 sqrt(D rho h) [kg/s].
+
+    It resists the force like a dashpot.
+    """
+    bending_stiffness = material.plane_strain_modulus * thickness**3 / 12.0  # D
+    return 8.0 * math.sqrt(bending_stiffness * material.density * thickness)
+
+
 def _deflection(case: CaseTable, speed: float) -> float:
     """Return the estimated deflection of an elastic plate at the contact point [m].
 
@@ -134,10 +144,8 @@ def _deflection(case: CaseTable, speed: float) -> float:
         return math.nan
     bending_stiffness = material.plane_strain_modulus * size[2] ** 3 / 12.0  # D
     mass = float(contact_pair(case).effective_mass)
-    # an infinite plate resists a point force like a dashpot of 8 sqrt(D rho h): the momentum of
-    # the rebound, 2 m v, moves it by that over this
-    impedance = 8.0 * math.sqrt(bending_stiffness * material.density * size[2])
-    of_infinite_plate = 2.0 * mass * speed / impedance
+    # the momentum of the rebound, 2 m v, moves an infinite plate by that over its impedance
+    of_infinite_plate = 2.0 * mass * speed / plate_impedance(material, size[2])
     # a small plate is a spring that takes up the energy: m v^2 = w^2 / compliance
     factor = _CLAMPED if case.plate.supports == "clamped" else _SUPPORTED
     compliance = factor * min(size[:2]) ** 2 / bending_stiffness
